@@ -1,0 +1,132 @@
+#include "bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isoparm {
+namespace {
+
+using rounding::up;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Right-handed frame with n along the surface normal where there is one. Orthonormal up to rounding.
+std::array<Point, 3> frame_at(const Enclosure& e) {
+    const auto middle = [](const Interval& x, const Interval& y, const Interval& z) { return Point{mid(x), mid(y), mid(z)}; };
+    const Point su = middle(e.centre.x.c[1], e.centre.y.c[1], e.centre.z.c[1]), sv = middle(e.centre.x.c[2], e.centre.y.c[2], e.centre.z.c[2]);
+    Point n = cross(su, sv);
+    if (!(length(n) > 1e-300) || !finite(n)) return {Point{0, 0, 1}, Point{1, 0, 0}, Point{0, 1, 0}};
+    n = normalized(n);
+    const Point axis = std::fabs(n.x) < 0.6 ? Point{1, 0, 0} : Point{0, 1, 0};
+    const Point t = normalized(cross(axis, n));
+    return {n, t, cross(n, t)};
+}
+/// |x|^2 <= kFrame^2 * sum (x . f_i)^2 for the frames above: their Gram matrix is the identity up to 1e-15.
+constexpr double kFrame = 1 + 1e-14;
+
+Interval along(const Point& f, const Interval& x, const Interval& y, const Interval& z) { return Interval(f.x) * x + Interval(f.y) * y + Interval(f.z) * z; }
+
+/// Length of a vector from upper bounds of its components along a frame.
+double length_bound(const std::array<double, 3>& c) {
+    const double sum = up(up(up(c[0] * c[0]) + up(c[1] * c[1])) + up(c[2] * c[2]));
+    return up(up(std::sqrt(sum)) * kFrame);
+}
+
+struct Edge {
+    Interval du, dv;    // corner k+1 minus corner k
+    double uu, uv, vv;  // upper bounds of du^2, |du dv|, dv^2
+};
+
+}  // namespace
+
+double simplex_maximum(double a, double b, double c) {
+    const double largest = std::max({a, b, c});
+    if (!(largest > 0)) return largest <= 0 ? 0 : kInfinity;
+    const double edge = largest / 4;
+    // On the plane l0 + l1 + l2 = 1 the form is concave iff all coefficients and D are positive; then its maximum over
+    // the whole plane is abc/D, attained at l proportional to (b(a+c-b), c(a+b-c), a(b+c-a)) (opposite edge first).
+    if (!(std::min({a, b, c}) > 0) || !std::isfinite(largest)) return std::isfinite(largest) ? edge : kInfinity;
+    const double slack = -1e-12 * largest;
+    if (a + c - b < slack || a + b - c < slack || b + c - a < slack) return edge;
+    const Interval A(a), B(b), C(c);
+    const Interval D = Interval(2) * (A * B + B * C + C * A) - (A * A + B * B + C * C);
+    const double third = up(largest / 3);
+    if (!(D.lo > 0)) return third;
+    return std::max(edge, std::min(third, (A * B * C / D).hi));
+}
+
+TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, const std::array<Point, 3>& points) {
+    const auto [u0, u1] = std::minmax({p[0].x, p[1].x, p[2].x});
+    const auto [v0, v1] = std::minmax({p[0].y, p[1].y, p[2].y});
+    const Enclosure e = patch.enclose({{u0, u1}, {v0, v1}});
+    const double ru = up(std::max(u1 - e.u, e.u - u0)), rv = up(std::max(v1 - e.v, e.v - v0));
+    const auto frame = frame_at(e);
+
+    std::array<Edge, 3> edges;
+    for (int k = 0; k < 3; ++k) {
+        const Vec2 &a = p[k], &b = p[(k + 1) % 3];
+        Edge& g = edges[k];
+        g.du = Interval(b.x) - Interval(a.x);
+        g.dv = Interval(b.y) - Interval(a.y);
+        g.uu = square(g.du).hi;
+        g.vv = square(g.dv).hi;
+        g.uv = up(mag(g.du) * mag(g.dv));
+    }
+    const double aspect = ru > 0 && rv > 0 ? rv / ru : 1;
+
+    std::array<double, 3> second{}, first{}, zeroth{};
+    std::array<double, 3> score{};
+    for (int f = 0; f < 3; ++f) {
+        const auto centre = [&](int i, int j) {
+            const int k = JetUV<Interval, 2>::index(i, j);
+            return along(frame[f], e.centre.x.c[k], e.centre.y.c[k], e.centre.z.c[k]);
+        };
+        const auto over = [&](int i, int j) {
+            const int k = JetUV<Interval, 3>::index(i, j);
+            return along(frame[f], e.over.x.c[k], e.over.y.c[k], e.over.z.c[k]);
+        };
+        // Second derivatives at the middle, and how far they stray from there: by the third ones, or by their own range.
+        const Interval huu = Interval(2) * centre(2, 0), huv = centre(1, 1), hvv = Interval(2) * centre(0, 2);
+        const double tuuu = 6 * mag(over(3, 0)), tuuv = 2 * mag(over(2, 1)), tuvv = 2 * mag(over(1, 2)), tvvv = 6 * mag(over(0, 3));
+        const double suu = std::min(up(up(tuuu * ru) + up(tuuv * rv)), mag(Interval(2) * over(2, 0) - huu));
+        const double suv = std::min(up(up(tuuv * ru) + up(tuvv * rv)), mag(over(1, 1) - huv));
+        const double svv = std::min(up(up(tuvv * ru) + up(tvvv * rv)), mag(Interval(2) * over(0, 2) - hvv));
+        // 2 |du dv| <= aspect du^2 + dv^2 / aspect makes the remainder a diagonal form, which adds up over the corners.
+        const double quu = up(suu + up(suv * aspect)), qvv = up(svv + up(suv / aspect));
+        std::array<double, 3> plus, minus;
+        for (int k = 0; k < 3; ++k) {
+            const Edge& g = edges[k];
+            const Interval b = huu * square(g.du) + Interval(2) * huv * g.du * g.dv + hvv * square(g.dv);
+            const double m = mid(b), q = up(rad(b) + up(up(quu * g.uu) + up(qvv * g.vv)));
+            plus[k] = up(m + q);
+            minus[k] = up(q - m);
+            score[k] += m * m;
+        }
+        const double largest = std::max(simplex_maximum(plus[0], plus[1], plus[2]), simplex_maximum(minus[0], minus[1], minus[2]));
+        second[f] = up(largest / 2);
+        const Interval gu = over(1, 0), gv = over(0, 1), x = over(0, 0);
+        first[f] = up(up(rad(gu) * ru) + up(rad(gv) * rv));
+        zeroth[f] = up(x.hi - x.lo);
+    }
+    const auto proved = [](const std::array<double, 3>& c) {
+        const double b = length_bound(c);
+        return std::isnan(b) ? kInfinity : b;
+    };
+    TriangleBound result;
+    const double smooth = proved(second), rough = std::min(proved(first), proved(zeroth));
+    result.parametric = std::min(smooth, rough);
+    if (!(smooth <= 4 * rough) || !std::isfinite(score[0] + score[1] + score[2]) || score[0] + score[1] + score[2] == 0)
+        for (int k = 0; k < 3; ++k) {
+            const double d = distance(points[k], points[(k + 1) % 3]);
+            score[k] = d * d;
+        }
+    // Where two edges are all but equal, the longer one in the domain: the choice must not hang on rounding.
+    for (int k = 0; k < 3; ++k) {
+        const double best = score[result.worst_edge];
+        const auto size = [&](int i) { return edges[i].uu + edges[i].vv; };
+        if (score[k] > best * (1 + 1e-9) || (score[k] >= best * (1 - 1e-9) && size(k) > size(result.worst_edge) * (1 + 1e-9))) result.worst_edge = k;
+    }
+    return result;
+}
+
+}  // namespace isoparm

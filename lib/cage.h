@@ -1,0 +1,31 @@
+// cage.h -- the control cage of a subdivision surface, as a value.
+#pragma once
+#include <vector>
+
+#include "scalar/vec.h"
+
+namespace isoparm {
+
+/// Vertices are named by their index, from 0. Faces list theirs in order, all turning the same way.
+struct Cage {
+    /// What happens at a boundary: no limit surface in its faces; smooth corners; corners of one face interpolated.
+    enum class Boundary { none, edge_only, edge_and_corner };
+    struct Crease {
+        int a, b;          // the ends of an edge
+        double sharpness;  // from 10 on: infinitely sharp
+    };
+    struct Corner {
+        int vertex;
+        double sharpness;
+    };
+
+    std::vector<Point> positions;
+    std::vector<std::vector<int>> faces;
+    std::vector<Crease> creases;
+    std::vector<Corner> corners;
+    std::vector<int> holes;  // faces without surface
+    Boundary boundary = Boundary::edge_and_corner;
+    std::vector<int> face_lines;  // where each face was read, for messages; or empty
+};
+
+}  // namespace isoparm

@@ -1,0 +1,48 @@
+#include "curve.h"
+
+#include "curves/modify.h"
+#include "piecewise_bezier.h"
+
+namespace isoparm {
+namespace {
+
+struct Reparametrized {
+    Curve curve;
+    double begin, end;
+    std::vector<Break> breaks() const {
+        auto list = curve.breaks();
+        for (auto& b : list) b.t = begin + (b.t - curve.begin()) * (end - begin) / (curve.end() - curve.begin());
+        return list;
+    }
+    template <class S> auto operator()(const S& t) const {
+        const double scale = (curve.end() - curve.begin()) / (end - begin);
+        return curve((t - begin) * scale + curve.begin());
+    }
+    Vec3<Polynomial> operator()(const Polynomial& t) const {
+        const double scale = (curve.end() - curve.begin()) / (end - begin);
+        return curve((t - Polynomial(begin)) * Polynomial(scale) + Polynomial(curve.begin()));
+    }
+};
+
+}  // namespace
+
+Vec3<Polynomial> Curve::Concept::exact(const Polynomial&) const {
+    return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
+}
+
+Curve reparametrized(const Curve& c, double begin, double end) {
+    if (c.begin() == begin && c.end() == end) return c;
+    if (const auto* b = c.bezier()) {
+        auto pieces = b->pieces();
+        const double scale = (end - begin) / (c.end() - c.begin());
+        for (auto& p : pieces) {
+            p.begin = begin + (p.begin - c.begin()) * scale;
+            p.end = begin + (p.end - c.begin()) * scale;
+        }
+        pieces.back().end = end;
+        return make_piecewise_bezier(std::move(pieces), b->continuity());
+    }
+    return make_curve(Reparametrized{c, begin, end});
+}
+
+}  // namespace isoparm

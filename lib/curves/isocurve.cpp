@@ -1,0 +1,58 @@
+#include "curves/isocurve.h"
+
+#include "error.h"
+
+namespace isoparm {
+namespace {
+
+/// Third derivatives are not in a PointJet; over intervals they come from the enclosure.
+class Isocurve final : public Curve::Concept {
+public:
+    Isocurve(Patch patch, Along along, double at) : patch_(std::move(patch)), along_(along), at_(at) {}
+    double begin() const override { return along_ == Along::u ? patch_.rect().u0 : patch_.rect().v0; }
+    double end() const override { return along_ == Along::u ? patch_.rect().u1 : patch_.rect().v1; }
+    std::vector<Break> breaks() const override {
+        std::vector<Break> list;
+        for (double t : along_ == Along::u ? patch_.breaks_u() : patch_.breaks_v()) list.push_back({t, 1});
+        return list;
+    }
+    void taylor(double t, int order, Vec3<double>* out) const override {
+        const auto j = along_ == Along::u ? patch_.jet(t, at_) : patch_.jet(at_, t);
+        store(j, std::min(order, 2), out);
+        if (order < 3) return;
+        const auto e = enclose(Interval(t));
+        for (int axis = 0; axis < 3; ++axis) out[3][axis] = mid(e.over[axis].coefficient(along_ == Along::u ? 3 : 0, along_ == Along::u ? 0 : 3));
+    }
+    void taylor(const Pack& t, int order, Vec3<Pack>* out) const override {
+        Vec3<double> one[4];
+        for (int i = 0; i < Pack::lanes; ++i) {
+            taylor(t[i], order, one);
+            for (int k = 0; k <= order; ++k)
+                for (int axis = 0; axis < 3; ++axis) out[k][axis].set(i, one[k][axis]);
+        }
+    }
+    void taylor(const Interval& t, int order, Vec3<Interval>* out) const override { store(enclose(t).over, order, out); }
+
+private:
+    Enclosure enclose(const Interval& t) const { return patch_.enclose(along_ == Along::u ? Box{t, Interval(at_)} : Box{Interval(at_), t}); }
+    template <class T, int N> void store(const Vec3<JetUV<T, N>>& j, int order, Vec3<T>* out) const {
+        for (int k = 0; k <= order; ++k)
+            for (int axis = 0; axis < 3; ++axis) out[k][axis] = along_ == Along::u ? j[axis].coefficient(k, 0) : j[axis].coefficient(0, k);
+    }
+    Patch patch_;
+    Along along_;
+    double at_;
+};
+
+}  // namespace
+
+Curve make_isocurve(const Patch& patch, Along along, double at) {
+    if (patch.domain() == Domain::triangle) throw_input("an isocurve needs a surface on a rectangle, found one on a triangle");
+    const Rect r = patch.rect();
+    const double low = along == Along::u ? r.v0 : r.u0, high = along == Along::u ? r.v1 : r.u1;
+    if (!(at >= low && at <= high))
+        throw_input("found " + std::string(along == Along::u ? "v" : "u") + " = " + to_text(at) + ", expected a value in [" + to_text(low) + ", " + to_text(high) + "]");
+    return Curve(std::make_shared<Isocurve>(patch, along, at));
+}
+
+}  // namespace isoparm

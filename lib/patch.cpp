@@ -1,0 +1,110 @@
+#include "patch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "error.h"
+
+namespace isoparm {
+namespace {
+
+Point first_order(const PointJet& j, int i, int k) { return {j.x.coefficient(i, k), j.y.coefficient(i, k), j.z.coefficient(i, k)}; }
+
+std::optional<Point> if_finite(const Point& p) { return finite(p) ? std::optional<Point>(p) : std::nullopt; }
+
+}  // namespace
+
+Vec3<Interval> Patch::enclose_point(double u, double v) const {
+    // On a break the cells of both sides count: their values agree only up to rounding.
+    const auto widened = [](double t, const std::vector<double>& breaks) {
+        return std::find(breaks.begin(), breaks.end(), t) == breaks.end() ? Interval(t) : Interval(std::nextafter(t, -HUGE_VAL), std::nextafter(t, HUGE_VAL));
+    };
+    return enclose_points({widened(u, breaks_u()), widened(v, breaks_v())});
+}
+
+Vec2 Patch::edge_point(int k, double t) const {
+    if (domain() == Domain::triangle) return k == 0 ? Vec2{0, 1 - t} : k == 1 ? Vec2{t, 0} : Vec2{1 - t, t};
+    const Rect r = rect();
+    const double u = t == 0 ? r.u0 : t == 1 ? r.u1 : r.u0 + t * (r.u1 - r.u0), v = t == 0 ? r.v0 : t == 1 ? r.v1 : r.v0 + t * (r.v1 - r.v0);
+    return k == 0 ? Vec2{u, r.v0} : k == 1 ? Vec2{r.u1, v} : k == 2 ? Vec2{u, r.v1} : Vec2{r.u0, v};
+}
+
+std::string Patch::edge_name(int k) const {
+    static const std::array<const char*, 4> quad{"c0", "d1", "c1", "d0"};
+    static const std::array<const char*, 3> triangle{"E1", "E2", "E3"};
+    return domain() == Domain::quad ? quad[k] : triangle[k];
+}
+
+std::vector<double> Patch::edge_breaks(int k) const {
+    if (domain() == Domain::triangle) return {};
+    const Rect r = rect();
+    const bool along_u = k == 0 || k == 2;
+    auto list = along_u ? breaks_u() : breaks_v();
+    for (auto& t : list) t = along_u ? (t - r.u0) / (r.u1 - r.u0) : (t - r.v0) / (r.v1 - r.v0);
+    return list;
+}
+
+std::optional<Point> unit_normal(const Patch& patch, const PointJet& jet, double u, double v) {
+    const Point su = first_order(jet, 1, 0), sv = first_order(jet, 0, 1);
+    if (!finite(su) || !finite(sv)) return {};
+    const Point n = cross(su, sv);
+    const double suu = length(2.0 * first_order(jet, 2, 0)), svv = length(2.0 * first_order(jet, 0, 2)), suv = length(first_order(jet, 1, 1));
+    const double scale = std::max({length(su), length(sv), std::isfinite(suu) ? suu : 0, std::isfinite(svv) ? svv : 0, std::isfinite(suv) ? suv : 0});
+    if (length(n) > 1e-12 * scale * scale) return normalized(n);
+    // S_u x S_v vanishes: the direction in which it leaves 0 when one moves into the domain, if all ways agree.
+    const Point nu = cross(2.0 * first_order(jet, 2, 0), sv) + cross(su, first_order(jet, 1, 1));
+    const Point nv = cross(first_order(jet, 1, 1), sv) + cross(su, 2.0 * first_order(jet, 0, 2));
+    if (!finite(nu) || !finite(nv)) return {};
+    std::vector<Vec2> inward;
+    if (patch.domain() == Domain::quad) {
+        const Rect r = patch.rect();
+        const double du = 1e-9 * (r.u1 - r.u0), dv = 1e-9 * (r.v1 - r.v0);
+        for (double a : {-1.0, 1.0})
+            if (u + a * du >= r.u0 && u + a * du <= r.u1) inward.push_back({a, 0});
+        for (double b : {-1.0, 1.0})
+            if (v + b * dv >= r.v0 && v + b * dv <= r.v1) inward.push_back({0, b});
+    } else {
+        for (const Vec2 d : {Vec2{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}}) {
+            const double a = u + 1e-9 * d.x, b = v + 1e-9 * d.y;
+            if (a >= 0 && b >= 0 && a + b <= 1 + 1e-15) inward.push_back(d);
+        }
+    }
+    std::optional<Point> limit;
+    for (const Vec2& d : inward) {
+        const Point m = d.x * nu + d.y * nv;
+        if (length(m) <= 1e-12 * scale * scale) continue;
+        const Point unit = normalized(m);
+        if (limit && length(unit - *limit) > 1e-7) return {};
+        limit = limit ? limit : unit;
+    }
+    return limit;
+}
+
+SurfacePoint evaluate(const Patch& patch, double u, double v) {
+    const Rect r = patch.rect();
+    const bool inside = patch.domain() == Domain::quad ? u >= r.u0 && u <= r.u1 && v >= r.v0 && v <= r.v1 : u >= 0 && v >= 0 && u + v <= 1 + 4e-16;
+    if (!inside)
+        throw_input("found (" + to_text(u) + ", " + to_text(v) + "), expected a point of the domain " +
+                    (patch.domain() == Domain::quad ? "[" + to_text(r.u0) + ", " + to_text(r.u1) + "] x [" + to_text(r.v0) + ", " + to_text(r.v1) + "]"
+                                                    : std::string("u >= 0, v >= 0, u + v <= 1")));
+    const PointJet jet = patch.jet(u, v);
+    SurfacePoint s;
+    s.position = first_order(jet, 0, 0);
+    s.du = if_finite(first_order(jet, 1, 0));
+    s.dv = if_finite(first_order(jet, 0, 1));
+    s.duu = if_finite(2.0 * first_order(jet, 2, 0));
+    s.duv = if_finite(first_order(jet, 1, 1));
+    s.dvv = if_finite(2.0 * first_order(jet, 0, 2));
+    s.normal = unit_normal(patch, jet, u, v);
+    if (!s.du || !s.dv || !s.duu || !s.duv || !s.dvv || !s.normal) return s;
+    const double E = dot(*s.du, *s.du), F = dot(*s.du, *s.dv), G = dot(*s.dv, *s.dv);
+    const double L = dot(*s.duu, *s.normal), M = dot(*s.duv, *s.normal), N = dot(*s.dvv, *s.normal);
+    const double area = E * G - F * F;
+    if (!(area > 1e-24 * (E + G) * (E + G))) return s;
+    s.gaussian = (L * N - M * M) / area;
+    s.mean = (E * N - 2 * F * M + G * L) / (2 * area);
+    return s;
+}
+
+}  // namespace isoparm

@@ -1,0 +1,93 @@
+// patch.h -- a parametric surface patch, as a value.
+//
+// Domain: a rectangle (u to the right, v up; [0,1]^2 unless it says otherwise) or the triangle u,v,w >= 0, u + v + w = 1,
+// given by (u,v). A patch type is one formula, templated on its scalar; PatchModel runs it on everything below.
+// Immutable, cheap to copy, safe to call from every thread.
+#pragma once
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "curve.h"
+#include "scalar/jet.h"
+#include "scalar/polynomial.h"
+
+namespace isoparm {
+
+enum class Domain { quad, triangle };
+
+struct Rect {
+    double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
+};
+struct Box {
+    Interval u, v;
+};
+
+/// Position and Taylor coefficients to second order: S = x.c[0..], S_u = coefficient(1,0), S_uu = 2 coefficient(2,0) ...
+/// A coefficient that does not exist (at a singular corner) is NaN.
+using PointJet = Vec3<JetUV<double, 2>>;
+
+/// What is proved over a box, and at its middle. Coefficients that have no bound there are Interval::all().
+struct Enclosure {
+    Vec3<JetUV<Interval, 2>> centre;  // at (mid u, mid v), point-like
+    Vec3<JetUV<Interval, 3>> over;    // for every point of the box
+    double u = 0, v = 0;              // the middle
+};
+
+class Patch {
+public:
+    struct Concept {
+        virtual ~Concept() = default;
+        virtual Domain domain() const = 0;
+        virtual Rect rect() const = 0;
+        /// Interior lines u = const, v = const across which derivatives of second order may jump.
+        virtual std::vector<double> breaks_u() const = 0;
+        virtual std::vector<double> breaks_v() const = 0;
+        virtual Point point(double u, double v) const = 0;
+        virtual PointJet jet(double u, double v) const = 0;
+        /// n positions; bit for bit the same as point().
+        virtual void points(std::size_t n, const double* u, const double* v, Point* out) const = 0;
+        virtual Enclosure enclose(const Box& box) const = 0;
+        /// Encloses every position over the box; cheaper than enclose().
+        virtual Vec3<Interval> enclose_points(const Box& box) const = 0;
+    };
+    explicit Patch(std::shared_ptr<const Concept> impl) : impl_(std::move(impl)) {}
+
+    Domain domain() const { return impl_->domain(); }
+    Rect rect() const { return impl_->rect(); }
+    std::vector<double> breaks_u() const { return impl_->breaks_u(); }
+    std::vector<double> breaks_v() const { return impl_->breaks_v(); }
+    Point point(double u, double v) const { return impl_->point(u, v); }
+    PointJet jet(double u, double v) const { return impl_->jet(u, v); }
+    void points(std::size_t n, const double* u, const double* v, Point* out) const { impl_->points(n, u, v, out); }
+    Enclosure enclose(const Box& box) const { return impl_->enclose(box); }
+    Vec3<Interval> enclose_points(const Box& box) const { return impl_->enclose_points(box); }
+    /// Encloses the exact position at (u,v).
+    Vec3<Interval> enclose_point(double u, double v) const;
+
+    int edges() const { return domain() == Domain::quad ? 4 : 3; }
+    /// Parameters on edge k, t in [0,1]. Quad: 0 = c0 (v low), 1 = d1 (u high), 2 = c1 (v high), 3 = d0 (u low), each
+    /// along its growing parameter. Triangle: 0 = E1 (B to C, u=0), 1 = E2 (C to A, v=0), 2 = E3 (A to B, w=0).
+    Vec2 edge_point(int k, double t) const;
+    std::string edge_name(int k) const;
+    std::vector<double> edge_breaks(int k) const;
+
+private:
+    std::shared_ptr<const Concept> impl_;
+};
+
+/// First derivatives, second derivatives and curvature as a user reads them; what does not exist is empty.
+struct SurfacePoint {
+    Point position;
+    std::optional<Point> du, dv, duu, duv, dvv;
+    std::optional<Point> normal;               // unit; the limit at poles and apexes, when there is one
+    std::optional<double> gaussian, mean;      // curvatures; mean > 0 bends toward the normal
+};
+SurfacePoint evaluate(const Patch& patch, double u, double v);
+
+/// The unit normal of a jet at (u,v), by the limit from inside the domain where S_u x S_v vanishes.
+std::optional<Point> unit_normal(const Patch& patch, const PointJet& jet, double u, double v);
+
+}  // namespace isoparm

@@ -1,0 +1,170 @@
+// patch_model.h -- runs one formula on every scalar: how a patch type becomes a Patch.
+//
+// A formula F has `static constexpr Domain domain` and, on a rectangle, `operator()(u, v)`, on the triangle
+// `operator()(u, v, w)`, templated on the scalars, returning a Vec3. Optional: rect(), breaks_u(), breaks_v().
+// A formula that is made of cells between its breaks picks its cell by cell_of(breaks, u).
+#pragma once
+#include <algorithm>
+
+#include "patch.h"
+
+namespace isoparm {
+
+inline double representative(double x) { return x; }
+inline double representative(const Pack& x) { return x[0]; }
+inline double representative(const Interval& x) { return mid(x); }
+template <class T, int I, int J, int N> double representative(const Jet<T, I, J, N>& x) { return representative(x.c[0]); }
+inline double representative(const Polynomial& x) { return mid(x.range()); }
+
+/// Index of the cell that holds u: to the right of a break that u equals.
+template <class S> std::size_t cell_of(const std::vector<double>& breaks, const S& u) {
+    return std::upper_bound(breaks.begin(), breaks.end(), representative(u)) - breaks.begin();
+}
+
+template <class F> class PatchModel final : public Patch::Concept {
+public:
+    explicit PatchModel(F f) : f_(std::move(f)) {
+        if constexpr (requires { f_.rect(); }) rect_ = f_.rect();
+        if constexpr (requires { f_.breaks_u(); }) breaks_u_ = f_.breaks_u(), breaks_v_ = f_.breaks_v();
+        edges_u_ = with_ends(rect_.u0, breaks_u_, rect_.u1);
+        edges_v_ = with_ends(rect_.v0, breaks_v_, rect_.v1);
+        for (std::size_t i = 0; i + 1 < edges_u_.size(); ++i)
+            for (std::size_t j = 0; j + 1 < edges_v_.size(); ++j)
+                exact_.push_back(exact_form({edges_u_[i], edges_u_[i + 1]}, {edges_v_[j], edges_v_[j + 1]}));
+    }
+
+    Domain domain() const override { return F::domain; }
+    Rect rect() const override { return rect_; }
+    std::vector<double> breaks_u() const override { return breaks_u_; }
+    std::vector<double> breaks_v() const override { return breaks_v_; }
+
+    Point point(double u, double v) const override { return value(run<0>(u, v)); }
+    PointJet jet(double u, double v) const override { return run<2>(u, v); }
+
+    void points(std::size_t n, const double* u, const double* v, Point* out) const override {
+        for (std::size_t k = 0; k < n; k += Pack::lanes) {
+            const std::size_t count = std::min<std::size_t>(Pack::lanes, n - k);
+            if (count == Pack::lanes && one_cell(u + k, v + k)) {
+                const auto p = run<0>(Pack::load(u + k), Pack::load(v + k));
+                for (std::size_t i = 0; i < count; ++i) out[k + i] = {p.x.c[0][i], p.y.c[0][i], p.z.c[0][i]};
+            } else {
+                for (std::size_t i = k; i < k + count; ++i) out[i] = point(u[i], v[i]);
+            }
+        }
+    }
+
+    Enclosure enclose(const Box& box) const override {
+        const std::size_t i0 = cell(breaks_u_, box.u.lo), i1 = last_cell(edges_u_, i0, box.u.hi);
+        const std::size_t j0 = cell(breaks_v_, box.v.lo), j1 = last_cell(edges_v_, j0, box.v.hi);
+        if (i0 == i1 && j0 == j1) return in_cell(box, i0, j0);
+        // Across breaks: the hull of the cells; second derivatives may jump there, third ones have no bound.
+        Enclosure all;
+        for (std::size_t i = i0; i <= i1; ++i)
+            for (std::size_t j = j0; j <= j1; ++j) {
+                const Box part{clip(box.u, {edges_u_[i], edges_u_[i + 1]}), clip(box.v, {edges_v_[j], edges_v_[j + 1]})};
+                const Enclosure e = in_cell(part, i, j);
+                if (i == i0 && j == j0) all = e;
+                for (int axis = 0; axis < 3; ++axis)
+                    for (int k = 0; k < e.over.x.size; ++k) all.over[axis].c[k] = hull(all.over[axis].c[k], e.over[axis].c[k]);
+            }
+        for (int axis = 0; axis < 3; ++axis)
+            for (int k = 3; k < all.over.x.size; ++k) all.over[axis].c[k] = Interval::all();
+        all.u = mid(box.u), all.v = mid(box.v);
+        all.centre = run<2>(Interval(all.u), Interval(all.v));
+        return all;
+    }
+    Vec3<Interval> enclose_points(const Box& box) const override {
+        const std::size_t i0 = cell(breaks_u_, box.u.lo), i1 = last_cell(edges_u_, i0, box.u.hi);
+        const std::size_t j0 = cell(breaks_v_, box.v.lo), j1 = last_cell(edges_v_, j0, box.v.hi);
+        Vec3<Interval> all;
+        for (std::size_t i = i0; i <= i1; ++i)
+            for (std::size_t j = j0; j <= j1; ++j) {
+                const Box part{clip(box.u, {edges_u_[i], edges_u_[i + 1]}), clip(box.v, {edges_v_[j], edges_v_[j + 1]})};
+                const auto x = points_in_cell(part, i, j);
+                for (int axis = 0; axis < 3; ++axis) all[axis] = i == i0 && j == j0 ? x[axis] : hull(all[axis], x[axis]);
+            }
+        return all;
+    }
+
+private:
+    static std::vector<double> with_ends(double a, const std::vector<double>& inner, double b) {
+        std::vector<double> e{a};
+        e.insert(e.end(), inner.begin(), inner.end());
+        e.push_back(b);
+        return e;
+    }
+    static std::size_t cell(const std::vector<double>& breaks, double t) { return cell_of(breaks, t); }
+    static std::size_t last_cell(const std::vector<double>& edges, std::size_t first, double hi) {
+        while (first + 2 < edges.size() && hi > edges[first + 1]) ++first;
+        return first;
+    }
+    bool one_cell(const double* u, const double* v) const {
+        if (breaks_u_.empty() && breaks_v_.empty()) return true;
+        for (int i = 1; i < Pack::lanes; ++i)
+            if (cell(breaks_u_, u[i]) != cell(breaks_u_, u[0]) || cell(breaks_v_, v[i]) != cell(breaks_v_, v[0])) return false;
+        return true;
+    }
+
+    static double third(double u, double v) { return std::max(0.0, 1 - u - v); }
+    static Pack third(const Pack& u, const Pack& v) {
+        return each_lane(Pack(1) - u - v, [](double x) { return std::max(0.0, x); });
+    }
+    static Interval third(const Interval& u, const Interval& v) { return clip(Interval(1) - u - v, {0, 1}); }
+
+    /// The formula on jets of order N.
+    template <int N, class T> Vec3<JetUV<T, N>> run(const T& u, const T& v) const {
+        const auto p = [&] {
+            if constexpr (F::domain == Domain::quad) return f_(variable_u<T, N>(u), variable_v<T, N>(v));
+            else return f_(variable_u<T, N>(u), variable_v<T, N>(v), variable_w<T, N>(third(u, v)));
+        }();
+        return {JetUV<T, N>(p.x), JetUV<T, N>(p.y), JetUV<T, N>(p.z)};
+    }
+    static Point value(const Vec3<JetUV<double, 0>>& p) { return {p.x.c[0], p.y.c[0], p.z.c[0]}; }
+
+    Vec3<Polynomial> exact_form(const Interval& u, const Interval& v) const {
+        const auto x = Polynomial::variable_u(u), y = Polynomial::variable_v(v);
+        if constexpr (F::domain == Domain::quad) return f_(x, y);
+        else return f_(x, y, Polynomial(1) - x - y);
+    }
+
+    const Vec3<Polynomial>* exact(std::size_t i, std::size_t j) const {
+        const auto& p = exact_[i * (edges_v_.size() - 1) + j];
+        return p.x.exists() && p.y.exists() && p.z.exists() ? &p : nullptr;
+    }
+    double middle_u(std::size_t i) const { return mid(Interval(edges_u_[i], edges_u_[i + 1])); }
+    double middle_v(std::size_t j) const { return mid(Interval(edges_v_[j], edges_v_[j + 1])); }
+
+    /// Intervals pick their cell by their middle; a box of one point on a break must not fall to its neighbour, so the
+    /// exact form is preferred and cells are closed on both sides.
+    Vec3<Interval> points_in_cell(const Box& box, std::size_t i, std::size_t j) const {
+        Vec3<JetUV<Interval, 0>> x;
+        if (const auto* p = exact(i, j)) {
+            for (int axis = 0; axis < 3; ++axis) (*p)[axis].template jets<0>(middle_u(i), middle_v(j), box.u, box.v, nullptr, &x[axis]);
+        } else {
+            x = run<0>(box.u, box.v);
+        }
+        return {x.x.c[0], x.y.c[0], x.z.c[0]};
+    }
+
+    Enclosure in_cell(const Box& box, std::size_t i, std::size_t j) const {
+        Enclosure e;
+        e.u = mid(box.u), e.v = mid(box.v);
+        if (const auto* p = exact(i, j)) {
+            for (int axis = 0; axis < 3; ++axis)
+                (*p)[axis].template jets<3>(middle_u(i), middle_v(j), box.u, box.v, &e.centre[axis], &e.over[axis]);
+        } else {
+            e.centre = run<2>(Interval(e.u), Interval(e.v));
+            e.over = run<3>(box.u, box.v);
+        }
+        return e;
+    }
+
+    F f_;
+    Rect rect_;
+    std::vector<double> breaks_u_, breaks_v_, edges_u_, edges_v_;
+    std::vector<Vec3<Polynomial>> exact_;  // per cell, where the surface is polynomial there
+};
+
+template <class F> Patch make_patch(F f) { return Patch(std::make_shared<PatchModel<F>>(std::move(f))); }
+
+}  // namespace isoparm

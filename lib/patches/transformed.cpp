@@ -1,0 +1,48 @@
+#include "patches/transformed.h"
+
+namespace isoparm {
+namespace {
+
+/// The map is affine, so it acts on Taylor coefficients: translation on the constant one only.
+template <class T, int N> Vec3<JetUV<T, N>> moved(const Transform& map, const Vec3<JetUV<T, N>>& x) {
+    Vec3<JetUV<T, N>> y;
+    for (int k = 0; k < x.x.size; ++k) {
+        const Vec3<T> c{x.x.c[k], x.y.c[k], x.z.c[k]};
+        const Vec3<T> d = k == 0 ? map.point(c) : map.vector(c);
+        for (int axis = 0; axis < 3; ++axis) y[axis].c[k] = d[axis];
+    }
+    return y;
+}
+
+class Transformed final : public Patch::Concept {
+public:
+    Transformed(Patch patch, const Transform& map) : patch_(std::move(patch)), map_(map) {}
+    Domain domain() const override { return patch_.domain(); }
+    Rect rect() const override { return patch_.rect(); }
+    std::vector<double> breaks_u() const override { return patch_.breaks_u(); }
+    std::vector<double> breaks_v() const override { return patch_.breaks_v(); }
+    Point point(double u, double v) const override { return map_.point(patch_.point(u, v)); }
+    PointJet jet(double u, double v) const override { return moved(map_, patch_.jet(u, v)); }
+    void points(std::size_t n, const double* u, const double* v, Point* out) const override {
+        patch_.points(n, u, v, out);
+        for (std::size_t i = 0; i < n; ++i) out[i] = map_.point(out[i]);
+    }
+    Enclosure enclose(const Box& box) const override {
+        Enclosure e = patch_.enclose(box);
+        e.centre = moved(map_, e.centre);
+        e.over = moved(map_, e.over);
+        return e;
+    }
+
+    Vec3<Interval> enclose_points(const Box& box) const override { return map_.point(patch_.enclose_points(box)); }
+
+private:
+    Patch patch_;
+    Transform map_;
+};
+
+}  // namespace
+
+Patch transformed(const Patch& patch, const Transform& m) { return Patch(std::make_shared<Transformed>(patch, m)); }
+
+}  // namespace isoparm

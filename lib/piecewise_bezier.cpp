@@ -1,0 +1,201 @@
+#include "piecewise_bezier.h"
+
+#include <algorithm>
+#include <array>
+
+#include "error.h"
+
+namespace isoparm {
+namespace {
+
+/// Taylor coefficients in s of the Bezier polynomial with these coordinates, by de Casteljau's triangle.
+template <class T> void bezier_taylor(const double* coordinates, int stride, int degree, const T& s, int order, T* out) {
+    std::array<T, max_degree + 1> b;
+    for (int i = 0; i <= degree; ++i) b[i] = T(coordinates[i * stride]);
+    const T r = T(1.0) - s;
+    for (int level = 0;; ++level) {
+        const int k = degree - level;  // k + 1 points are left: their k-th difference is the k-th derivative
+        if (k <= order) {
+            std::array<T, max_degree + 1> d;
+            std::copy(b.begin(), b.begin() + k + 1, d.begin());
+            for (int m = 0; m < k; ++m)
+                for (int i = 0; i < k - m; ++i) d[i] = d[i + 1] - d[i];
+            out[k] = k == 0 ? d[0] : d[0] * T(binomial(degree, k));
+        }
+        if (k == 0) break;
+        for (int i = 0; i < k; ++i) b[i] = r * b[i] + s * b[i + 1];
+    }
+    for (int k = degree + 1; k <= order; ++k) out[k] = T(0.0);
+}
+
+/// The same over a wide interval: all coefficients at the middle, then the exact expansion about it.
+void bezier_taylor(const double* coordinates, int stride, int degree, const Interval& s, int order, Interval* out) {
+    const double m = mid(s);
+    std::array<Interval, max_degree + 1> a;
+    bezier_taylor<Interval>(coordinates, stride, degree, Interval(m), degree, a.data());
+    shift_taylor(a.data(), degree, s - Interval(m), order, out);
+}
+
+template <class T> void piece_taylor(const BezierPiece& piece, const T& t, int order, Vec3<T>* out) {
+    const int n = piece.degree();
+    const T h = T(piece.end) - T(piece.begin);
+    const T s = (t - T(piece.begin)) / h;
+    constexpr int most = max_degree + 1;
+    T c[3][most], w[most];
+    double weighted[max_degree + 1];
+    const bool rational = !piece.weights.empty();
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int i = 0; i <= n; ++i) weighted[i] = piece.points[i][axis] * (rational ? piece.weights[i] : 1.0);
+        bezier_taylor(weighted, 1, n, s, order, c[axis]);
+    }
+    if (rational) {  // x = N / w by the quotient recurrence
+        bezier_taylor(piece.weights.data(), 1, n, s, order, w);
+        for (auto& x : c)
+            for (int k = 0; k <= order; ++k) {
+                for (int l = 0; l < k; ++l) x[k] = x[k] - x[l] * w[k - l];
+                x[k] = x[k] / w[0];
+            }
+    }
+    T scale(1.0);
+    for (int k = 0; k <= order; ++k) {
+        out[k] = {c[0][k] / scale, c[1][k] / scale, c[2][k] / scale};
+        scale = scale * h;
+    }
+}
+
+/// Weighted coordinates round; over intervals that must be enclosed too.
+template <> void piece_taylor(const BezierPiece& piece, const Interval& t, int order, Vec3<Interval>* out) {
+    const int n = piece.degree();
+    const Interval h = Interval(piece.end) - Interval(piece.begin);
+    const Interval s = (t - Interval(piece.begin)) / h;
+    Interval c[3][max_degree + 1], w[max_degree + 1];
+    const bool rational = !piece.weights.empty();
+    double low[max_degree + 1], high[max_degree + 1];
+    for (int axis = 0; axis < 3; ++axis) {
+        bool exact = true;
+        for (int i = 0; i <= n; ++i) {
+            const Interval x = rational ? Interval(piece.points[i][axis]) * Interval(piece.weights[i]) : Interval(piece.points[i][axis]);
+            low[i] = mid(x);
+            high[i] = rad(x);
+            exact = exact && high[i] == 0;
+        }
+        bezier_taylor(low, 1, n, s, order, c[axis]);
+        if (exact) continue;
+        // The products were rounded: each Bezier coefficient is off by at most high[i], so each Taylor coefficient of
+        // order k by at most binomial(n,k) 2^k times the largest of them.
+        const double worst = *std::max_element(high, high + n + 1);
+        double factor = 1;
+        for (int k = 0; k <= order && k <= n; ++k) {
+            const double e = rounding::up(worst * (factor * binomial(n, k)));
+            c[axis][k] = c[axis][k] + Interval(-e, e);
+            factor *= 2;
+        }
+    }
+    if (rational) {
+        bezier_taylor(piece.weights.data(), 1, n, s, order, w);
+        for (auto& x : c)
+            for (int k = 0; k <= order; ++k) {
+                for (int l = 0; l < k; ++l) x[k] = x[k] - x[l] * w[k - l];
+                x[k] = x[k] / w[0];
+            }
+    }
+    Interval scale(1.0);
+    for (int k = 0; k <= order; ++k) {
+        out[k] = {c[0][k] / scale, c[1][k] / scale, c[2][k] / scale};
+        scale = scale * h;
+    }
+}
+
+}  // namespace
+
+PiecewiseBezier::PiecewiseBezier(std::vector<BezierPiece> pieces, std::vector<int> continuity)
+    : pieces_(std::move(pieces)), continuity_(std::move(continuity)) {
+    if (pieces_.empty()) throw_input("a curve needs at least one piece");
+    continuity_.resize(pieces_.size() - 1, 0);
+    for (const auto& p : pieces_) {
+        if (p.points.empty()) throw_input("a Bezier curve needs at least one point");
+        if (p.degree() > max_degree)
+            throw_input("found a curve of degree " + std::to_string(p.degree()) + ", expected at most " + std::to_string(max_degree));
+        if (!p.weights.empty() && p.weights.size() != p.points.size())
+            throw_input("found " + std::to_string(p.weights.size()) + " weights for " + std::to_string(p.points.size()) +
+                        " points, expected one weight a point");
+        for (std::size_t i = 0; i < p.points.size(); ++i) {
+            if (!finite(p.points[i])) throw_input("point " + std::to_string(i) + " is not finite");
+            if (!p.weights.empty() && !(p.weights[i] > 0 && std::isfinite(p.weights[i])))
+                throw_input("found weight " + to_text(p.weights[i]) + " at point " + std::to_string(i) + ", expected a positive number");
+        }
+        if (!(p.begin < p.end)) throw_input("found a curve over [" + to_text(p.begin) + ", " + to_text(p.end) + "], expected begin < end");
+    }
+}
+
+std::vector<Break> PiecewiseBezier::breaks() const {
+    std::vector<Break> list;
+    for (std::size_t k = 0; k + 1 < pieces_.size(); ++k) list.push_back({pieces_[k].end, continuity_[k]});
+    return list;
+}
+
+bool PiecewiseBezier::rational() const {
+    return std::any_of(pieces_.begin(), pieces_.end(), [](const BezierPiece& p) { return !p.weights.empty(); });
+}
+
+std::size_t PiecewiseBezier::piece_at(double t) const {
+    std::size_t k = 0;
+    while (k + 1 < pieces_.size() && t >= pieces_[k].end) ++k;
+    return k;
+}
+
+void PiecewiseBezier::taylor(double t, int order, Vec3<double>* out) const { piece_taylor(pieces_[piece_at(t)], t, order, out); }
+
+void PiecewiseBezier::taylor(const Pack& t, int order, Vec3<Pack>* out) const {
+    const std::size_t k = piece_at(t[0]);
+    bool same = true;
+    for (int i = 1; i < Pack::lanes; ++i) same = same && piece_at(t[i]) == k;
+    if (same) return piece_taylor(pieces_[k], t, order, out);
+    std::array<Vec3<double>, 4> one;
+    for (int i = 0; i < Pack::lanes; ++i) {
+        taylor(t[i], order, one.data());
+        for (int j = 0; j <= order; ++j)
+            for (int axis = 0; axis < 3; ++axis) out[j][axis].set(i, one[j][axis]);
+    }
+}
+
+void PiecewiseBezier::taylor(const Interval& t, int order, Vec3<Interval>* out) const {
+    // The pieces that meet the interval in more than a point; at a single point, the one to its right.
+    const std::size_t first = piece_at(t.lo);
+    std::size_t last = first;
+    while (last + 1 < pieces_.size() && t.hi > pieces_[last].end) ++last;
+    if (first == last) return piece_taylor(pieces_[first], t, order, out);
+    int smooth = max_degree;
+    std::array<Vec3<Interval>, max_degree + 1> one;
+    for (std::size_t k = first; k <= last; ++k) {
+        const Interval part(k == first ? t.lo : pieces_[k].begin, k == last ? t.hi : pieces_[k].end);
+        piece_taylor(pieces_[k], part, order, one.data());
+        for (int j = 0; j <= order; ++j)
+            for (int axis = 0; axis < 3; ++axis) out[j][axis] = k == first ? one[j][axis] : hull(out[j][axis], one[j][axis]);
+        if (k < last) smooth = std::min(smooth, continuity_[k]);
+    }
+    for (int j = smooth + 2; j <= order; ++j) out[j] = {Interval::all(), Interval::all(), Interval::all()};
+}
+
+Vec3<Polynomial> PiecewiseBezier::exact(const Polynomial& t) const {
+    const Vec3<Polynomial> none{Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
+    if (!t.exists()) return none;
+    const Interval range = t.range();
+    const auto& piece = pieces_[piece_at(mid(range))];
+    const double slack = 1e-9 * (piece.end - piece.begin);
+    if (!piece.weights.empty() || range.lo < piece.begin - slack || range.hi > piece.end + slack) return none;
+    const double m = mid(range);
+    std::array<Vec3<Interval>, max_degree + 1> a;
+    piece_taylor(piece, Interval(m), piece.degree(), a.data());
+    const Polynomial step = t - Polynomial(m);
+    Vec3<Polynomial> r{Polynomial(a[piece.degree()].x), Polynomial(a[piece.degree()].y), Polynomial(a[piece.degree()].z)};
+    for (int k = piece.degree() - 1; k >= 0; --k)
+        for (int axis = 0; axis < 3; ++axis) r[axis] = r[axis] * step + Polynomial(a[k][axis]);
+    return r;
+}
+
+Curve make_piecewise_bezier(std::vector<BezierPiece> pieces, std::vector<int> continuity) {
+    return Curve(std::make_shared<PiecewiseBezier>(std::move(pieces), std::move(continuity)));
+}
+
+}  // namespace isoparm

@@ -1,0 +1,201 @@
+// scalar/elementary.h -- sin, cos, exp, log and powers on packs, intervals and jets; kinks (abs, min, max, if) on all.
+//
+// The mathematical libraries in use err by less than one unit in the last place here, but do not round correctly; the
+// interval versions therefore move results outward by three such steps. Jets come from Taylor coefficients by compose().
+#pragma once
+#include <cmath>
+#include <numbers>
+
+#include "scalar/interval.h"
+#include "scalar/jet.h"
+#include "scalar/pack.h"
+#include "scalar/polynomial.h"
+
+namespace isoparm {
+
+// ---- packs: lane by lane what a double would do ---------------------------------------------------------------------
+inline Pack sin(const Pack& a) { return each_lane(a, [](double x) { return std::sin(x); }); }
+inline Pack cos(const Pack& a) { return each_lane(a, [](double x) { return std::cos(x); }); }
+inline Pack exp(const Pack& a) { return each_lane(a, [](double x) { return std::exp(x); }); }
+inline Pack log(const Pack& a) { return each_lane(a, [](double x) { return std::log(x); }); }
+inline Pack pow(const Pack& a, double p) { return each_lane(a, [p](double x) { return std::pow(x, p); }); }
+
+// ---- intervals ------------------------------------------------------------------------------------------------------
+namespace rounding {
+/// Below and above every number that a library function may have meant by x; an underflowed 0 may be any tiny number.
+inline double below(double x) { return x == 0 ? -kTiny : down(down(down(x))); }
+inline double above(double x) { return x == 0 ? kTiny : up(up(up(x))); }
+/// May phase + k period, k an integer, lie in a? Never no when it does.
+inline bool may_hold(const Interval& a, const Interval& phase, const Interval& period) {
+    const Interval turns = (a - phase) / period;
+    return !turns.bounded() || std::ceil(turns.lo) <= turns.hi;
+}
+inline const Interval pi{3.141592653589793, 3.1415926535897936};
+}  // namespace rounding
+
+inline Interval cos(const Interval& a) {
+    using namespace rounding;
+    if (!a.bounded()) return {-1, 1};
+    const double p = std::cos(a.lo), q = std::cos(a.hi);
+    const Interval turn = pi * 2.0;
+    const double lo = may_hold(a, pi, turn) ? -1 : std::max(-1.0, below(std::min(p, q)));
+    const double hi = may_hold(a, 0.0, turn) ? 1 : std::min(1.0, above(std::max(p, q)));
+    return {lo, hi};
+}
+inline Interval sin(const Interval& a) {
+    using namespace rounding;
+    if (!a.bounded()) return {-1, 1};
+    if (a.lo == 0 && a.hi == 0) return 0.0;
+    const double p = std::sin(a.lo), q = std::sin(a.hi);
+    const Interval turn = pi * 2.0, quarter = pi * 0.5;
+    const double lo = may_hold(a, -quarter, turn) ? -1 : std::max(-1.0, below(std::min(p, q)));
+    const double hi = may_hold(a, quarter, turn) ? 1 : std::min(1.0, above(std::max(p, q)));
+    return {lo, hi};
+}
+inline Interval exp(const Interval& a) {
+    using namespace rounding;
+    return checked(std::max(0.0, below(std::exp(a.lo))), above(std::exp(a.hi)));
+}
+/// Of the positive part of a; all() where that reaches 0.
+inline Interval log(const Interval& a) {
+    using namespace rounding;
+    if (!(a.lo > 0)) return Interval::all();
+    return checked(below(std::log(a.lo)), above(std::log(a.hi)));
+}
+/// a^p, p not an integer, of the part of a that is not negative.
+inline Interval pow(const Interval& a, double p) {
+    using namespace rounding;
+    if (a.hi < 0 || (p < 0 && a.lo <= 0)) return Interval::all();
+    const double at_lo = std::pow(std::max(a.lo, 0.0), p), at_hi = std::pow(a.hi, p);
+    return checked(std::max(0.0, below(std::min(at_lo, at_hi))), above(std::max(at_lo, at_hi)));
+}
+
+// ---- jets -----------------------------------------------------------------------------------------------------------
+template <class T, int I, int J, int N> Jet<T, I, J, N> sin(const Jet<T, I, J, N>& x) {
+    using std::cos, std::sin;
+    const T s = sin(x.c[0]), c = cos(x.c[0]);
+    const T f[] = {s, c, -s / T(2.0), -c / T(6.0)};
+    return compose(f, x);
+}
+template <class T, int I, int J, int N> Jet<T, I, J, N> cos(const Jet<T, I, J, N>& x) {
+    using std::cos, std::sin;
+    const T s = sin(x.c[0]), c = cos(x.c[0]);
+    const T f[] = {c, -s, -c / T(2.0), s / T(6.0)};
+    return compose(f, x);
+}
+template <class T, int I, int J, int N> Jet<T, I, J, N> exp(const Jet<T, I, J, N>& x) {
+    using std::exp;
+    const T e = exp(x.c[0]);
+    const T f[] = {e, e, e / T(2.0), e / T(6.0)};
+    return compose(f, x);
+}
+template <class T, int I, int J, int N> Jet<T, I, J, N> log(const Jet<T, I, J, N>& x) {
+    using std::log;
+    const T r = T(1.0) / x.c[0];
+    const T f[] = {log(x.c[0]), r, -(r * r) / T(2.0), r * r * r / T(3.0)};
+    return compose(f, x);
+}
+template <class T, int I, int J, int N> Jet<T, I, J, N> sqrt(const Jet<T, I, J, N>& x) {
+    using std::sqrt;
+    const T s = sqrt(x.c[0]);
+    const T r = T(0.5) / s, r3 = r * r * r;
+    const T f[] = {s, r, -r3, r3 * r * r * T(2.0)};  // 1/(2s), -1/(8s^3), 1/(16s^5)
+    return compose(f, x);
+}
+/// x^p, p not an integer, x >= 0.
+template <class T, int I, int J, int N> Jet<T, I, J, N> pow(const Jet<T, I, J, N>& x, double p) {
+    using std::pow;
+    T f[4], factor(1.0);
+    for (int k = 0; k <= std::min(N, 3); ++k) {
+        f[k] = factor * pow(x.c[0], p - k);
+        factor = factor * (T(p) - T(double(k))) / T(double(k + 1));
+    }
+    return compose(f, x);
+}
+
+/// x^n by repeated squaring: polynomials stay polynomials.
+template <class S> S power(const S& x, int n) {
+    if (n < 0) return S(1.0) / power(x, -n);
+    if (n == 0) return S(1.0);
+    if (n == 1) return x;
+    const S half = square(power(x, n / 2));
+    return n % 2 == 0 ? half : half * x;
+}
+
+// ---- choices: a formula with a case distinction ---------------------------------------------------------------------
+enum class Comparison { less, less_equal, greater, greater_equal, equal, not_equal };
+enum class Truth { no, yes, unknown };
+
+template <class T> auto compared(Comparison how, const T& a, const T& b) {
+    switch (how) {
+        case Comparison::less: return a < b;
+        case Comparison::less_equal: return a <= b;
+        case Comparison::greater: return a > b;
+        case Comparison::greater_equal: return a >= b;
+        case Comparison::equal: return a == b;
+        default: return a != b;
+    }
+}
+inline bool decide(Comparison how, double a, double b, bool) { return compared(how, a, b); }
+inline auto decide(Comparison how, const Pack& a, const Pack& b, bool) { return compared(how, a.v, b.v); }
+/// `touching`: intervals that only touch count as lying to either side, which is right for a choice that is continuous.
+inline Truth decide(Comparison how, const Interval& a, const Interval& b, bool touching) {
+    const bool point = a.lo == a.hi && b.lo == b.hi;
+    if (point) return compared(how, a.lo, b.lo) ? Truth::yes : Truth::no;
+    const bool below = a.hi < b.lo || (touching && a.hi == b.lo), above = a.lo > b.hi || (touching && a.lo == b.hi);
+    if (!below && !above) return Truth::unknown;
+    switch (how) {
+        case Comparison::less:
+        case Comparison::less_equal: return below ? Truth::yes : Truth::no;
+        case Comparison::greater:
+        case Comparison::greater_equal: return above ? Truth::yes : Truth::no;
+        default: return touching && (a.hi == b.lo || a.lo == b.hi) ? Truth::unknown
+                                                                  : how == Comparison::equal ? Truth::no : Truth::yes;
+    }
+}
+
+template <class T> T choose(bool c, const T& a, const T& b) { return c ? a : b; }
+template <class Mask, int I, int J, int N>
+Jet<Pack, I, J, N> choose(const Mask& c, Jet<Pack, I, J, N> a, const Jet<Pack, I, J, N>& b) {
+    for (int k = 0; k < a.size; ++k) a.c[k].v = c ? a.c[k].v : b.c[k].v;
+    return a;
+}
+template <int I, int J, int N>
+Jet<Interval, I, J, N> choose(Truth c, const Jet<Interval, I, J, N>& a, const Jet<Interval, I, J, N>& b, bool continuous) {
+    if (c != Truth::unknown) return c == Truth::yes ? a : b;
+    // A continuous choice is Lipschitz: its slope stays between those of its branches, but it has no second derivative.
+    Jet<Interval, I, J, N> r;
+    for (int k = 0; k < r.size; ++k) {
+        const int order = r.powers[k].first + r.powers[k].second;
+        r.c[k] = order == 0 || (order == 1 && continuous) ? hull(a.c[k], b.c[k]) : Interval::all();
+    }
+    return r;
+}
+
+/// a where x compares so with y, else b. `continuous`: the branches agree where the choice switches.
+template <class S> S choose(Comparison how, const S& x, const S& y, const S& a, const S& b, bool continuous) {
+    if constexpr (std::is_same_v<S, Polynomial>) {
+        return Polynomial::nothing();
+    } else {
+        const auto c = decide(how, base(x), base(y), continuous);
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(c)>, Truth>) return choose(c, a, b, continuous);
+        else return choose(c, a, b);
+    }
+}
+template <class S> S absolute(const S& x) {
+    S r = choose(Comparison::less, x, S(0.0), S(-x), x, true);
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(base(x))>, Interval>) r.c[0] = abs(x.c[0]);
+    return r;
+}
+template <class S> S smaller(const S& a, const S& b) {
+    S r = choose(Comparison::less, b, a, b, a, true);
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(base(a))>, Interval>) r.c[0] = min(a.c[0], b.c[0]);
+    return r;
+}
+template <class S> S larger(const S& a, const S& b) {
+    S r = choose(Comparison::less, a, b, b, a, true);
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(base(a))>, Interval>) r.c[0] = max(a.c[0], b.c[0]);
+    return r;
+}
+
+}  // namespace isoparm

@@ -1,0 +1,136 @@
+#include "scalar/polynomial.h"
+
+#include <algorithm>
+
+namespace isoparm {
+
+double binomial(int n, int k) {
+    static const auto table = [] {
+        std::array<std::array<double, 65>, 65> t{};
+        for (int i = 0; i < 65; ++i) {
+            t[i][0] = 1;
+            for (int j = 1; j <= i; ++j) t[i][j] = t[i - 1][j - 1] + t[i - 1][j];
+        }
+        return t;
+    }();
+    return table[n][k];
+}
+
+void shift_taylor(const Interval* a, int degree, const Interval& d, int order, Interval* out) {
+    const double r = mag(d);
+    const bool symmetric = d.lo < 0 && d.hi > 0;
+    for (int k = 0; k <= order; ++k) {
+        out[k] = k <= degree ? a[k] : Interval(0);
+        double p = 1;       // at least r^(j-k)
+        Interval power(1);  // encloses d^(j-k)
+        for (int j = k + 1; j <= degree; ++j) {
+            if (symmetric) {  // even powers are not negative, odd ones lie in [-r^n, r^n]
+                p = rounding::up(p * r);
+                power = Interval((j - k) % 2 == 0 ? 0 : -p, p);
+            } else {
+                power = power * d;
+            }
+            out[k] = out[k] + (a[j] * power) * Interval(binomial(j, k));
+        }
+    }
+}
+
+void polynomial_taylor(const double* c, int degree, const Interval& t, int order, Interval* out) {
+    const double m = mid(t);
+    std::vector<Interval> a(c, c + degree + 1);
+    for (int k = 0; k <= degree; ++k)
+        for (int i = degree - 1; i >= k; --i) a[i] = a[i] + a[i + 1] * Interval(m);
+    shift_taylor(a.data(), degree, t - Interval(m), order, out);
+}
+
+Polynomial Polynomial::nothing() {
+    Polynomial p;
+    p.c_.clear();
+    return p;
+}
+
+Polynomial Polynomial::variable_u(const Interval& u) {
+    Polynomial p(1, 0);
+    p.coefficient(0, 0) = Interval(mid(u));
+    p.coefficient(1, 0) = Interval(1);
+    p.x_ = Interval(-rad(u), rad(u));
+    return p;
+}
+
+Polynomial Polynomial::variable_v(const Interval& v) {
+    Polynomial p(0, 1);
+    p.coefficient(0, 0) = Interval(mid(v));
+    p.coefficient(0, 1) = Interval(1);
+    p.y_ = Interval(-rad(v), rad(v));
+    return p;
+}
+
+Interval Polynomial::range() const {
+    Interval sum(0), px(1);
+    for (int i = 0; i <= p_; ++i) {
+        Interval py(1), row(0);
+        for (int j = 0; j <= q_; ++j) {
+            row = row + coefficient(i, j) * py;
+            py = py * y_;
+        }
+        sum = sum + row * px;
+        px = px * x_;
+    }
+    return sum;
+}
+
+namespace {
+Interval wider(const Interval& a, const Interval& b) { return hull(a, b); }
+}  // namespace
+
+Polynomial operator+(const Polynomial& a, const Polynomial& b) {
+    if (!a.exists() || !b.exists()) return Polynomial::nothing();
+    Polynomial r(std::max(a.p_, b.p_), std::max(a.q_, b.q_));
+    r.x_ = wider(a.x_, b.x_);
+    r.y_ = wider(a.y_, b.y_);
+    for (int i = 0; i <= a.p_; ++i)
+        for (int j = 0; j <= a.q_; ++j) r.coefficient(i, j) = a.coefficient(i, j);
+    for (int i = 0; i <= b.p_; ++i)
+        for (int j = 0; j <= b.q_; ++j) r.coefficient(i, j) = r.coefficient(i, j) + b.coefficient(i, j);
+    return r;
+}
+
+Polynomial operator-(const Polynomial& a) {
+    Polynomial r = a;
+    for (auto& c : r.c_) c = -c;
+    return r;
+}
+
+Polynomial operator*(const Polynomial& a, const Polynomial& b) {
+    if (!a.exists() || !b.exists() || a.p_ + b.p_ > 64 || a.q_ + b.q_ > 64) return Polynomial::nothing();
+    Polynomial r(a.p_ + b.p_, a.q_ + b.q_);
+    r.x_ = wider(a.x_, b.x_);
+    r.y_ = wider(a.y_, b.y_);
+    for (int i = 0; i <= a.p_; ++i)
+        for (int j = 0; j <= a.q_; ++j)
+            for (int k = 0; k <= b.p_; ++k)
+                for (int l = 0; l <= b.q_; ++l)
+                    r.coefficient(i + k, j + l) = r.coefficient(i + k, j + l) + a.coefficient(i, j) * b.coefficient(k, l);
+    return r;
+}
+
+Polynomial operator/(const Polynomial& a, const Polynomial& b) {
+    if (!b.exists() || b.p_ != 0 || b.q_ != 0) return Polynomial::nothing();
+    Polynomial r = a;
+    for (auto& c : r.c_) c = c / b.c_[0];
+    return r;
+}
+
+/// Coefficients about the centre moved by (dx, dy): Horner's scheme along each parameter (repeated synthetic division).
+void Polynomial::recentre(const Interval& dx, const Interval& dy, std::vector<Interval>& out) const {
+    out = c_;
+    const int stride = q_ + 1;
+    for (int k = 0; k < p_; ++k)
+        for (int i = p_ - 1; i >= k; --i)
+            for (int j = 0; j <= q_; ++j) out[i * stride + j] += out[(i + 1) * stride + j] * dx;
+    for (int i = 0; i <= p_; ++i)
+        for (int k = 0; k < q_; ++k)
+            for (int j = q_ - 1; j >= k; --j) out[i * stride + j] += out[i * stride + j + 1] * dy;
+}
+
+}  // namespace isoparm

@@ -1,0 +1,119 @@
+// scalar/polynomial.h -- exact polynomials: univariate with known coefficients, and bivariate as a scalar of formulas.
+//
+// A polynomial of degree n is its own Taylor expansion of order n. So a formula that runs on Polynomial instead of a jet
+// yields, when all its parts are polynomial, the surface itself: exact up to the outward rounding of the coefficients.
+// What is not polynomial (a quotient, a rational curve) makes the result `!exists()`, and callers use interval jets.
+#pragma once
+#include <vector>
+
+#include "scalar/jet.h"
+
+namespace isoparm {
+
+double binomial(int n, int k);
+
+/// Taylor coefficients out[0..order] at t of sum c[k] t^k. Over an interval: centred form, so no dependency is lost
+/// between the powers of t.
+template <class T> void polynomial_taylor(const double* c, int degree, const T& t, int order, T* out) {
+    std::vector<T> a(c, c + degree + 1);
+    for (int k = 0; k <= order; ++k) {  // repeated synthetic division
+        out[k] = T(0.0);
+        if (k > degree) continue;
+        for (int i = degree - 1; i >= k; --i) a[i] = a[i] + a[i + 1] * t;
+        out[k] = a[k];
+    }
+}
+/// Taylor coefficients over c + d (d an interval around 0) from those at c: sum_j binomial(j,k) a[j] d^(j-k).
+void shift_taylor(const Interval* a, int degree, const Interval& d, int order, Interval* out);
+void polynomial_taylor(const double* c, int degree, const Interval& t, int order, Interval* out);
+
+/// sum c[k] t^k for a jet t, or a number.
+template <class T, int I, int J, int N> Jet<T, I, J, N> polynomial(const double* c, int degree, const Jet<T, I, J, N>& t) {
+    T a[N + 1];
+    polynomial_taylor(c, degree, t.c[0], N, a);
+    return compose(a, t);
+}
+inline double polynomial(const double* c, int degree, double t) {
+    double r = c[degree];
+    for (int k = degree - 1; k >= 0; --k) r = r * t + c[k];
+    return r;
+}
+
+/// Polynomial in (x,y) = (u,v) - centre with interval coefficients, over the box |x| <= hx, |y| <= hy.
+class Polynomial {
+public:
+    Polynomial(double value = 0) : p_(0), q_(0), c_{Interval(value)} {}  // NOLINT: numbers are polynomials
+    Polynomial(const Interval& value) : p_(0), q_(0), c_{value} {}       // NOLINT
+    static Polynomial variable_u(const Interval& u);
+    static Polynomial variable_v(const Interval& v);
+    static Polynomial nothing();
+
+    bool exists() const { return !c_.empty(); }
+    int degree_u() const { return p_; }
+    int degree_v() const { return q_; }
+    const Interval& coefficient(int i, int j) const { return c_[i * (q_ + 1) + j]; }
+    Interval& coefficient(int i, int j) { return c_[i * (q_ + 1) + j]; }
+    /// Encloses all values over the box.
+    Interval range() const;
+
+    friend Polynomial operator+(const Polynomial& a, const Polynomial& b);
+    friend Polynomial operator-(const Polynomial& a);
+    friend Polynomial operator*(const Polynomial& a, const Polynomial& b);
+    friend Polynomial operator/(const Polynomial& a, const Polynomial& b);
+
+    /// Taylor coefficients of order N over the box (u,v); exact ranges up to rounding of the centred form.
+    template <int N> void jets(double centre_u, double centre_v, const Interval& u, const Interval& v,
+                               JetUV<Interval, 2>* at_centre, JetUV<Interval, N>* over) const;
+
+private:
+    Polynomial(int p, int q) : p_(p), q_(q), c_(static_cast<std::size_t>((p + 1) * (q + 1))) {}
+    void recentre(const Interval& dx, const Interval& dy, std::vector<Interval>& out) const;
+    int p_, q_;
+    std::vector<Interval> c_;
+    Interval x_{0}, y_{0};  // the box, around 0
+};
+
+inline Polynomial operator-(const Polynomial& a, const Polynomial& b) { return a + (-b); }
+inline Polynomial square(const Polynomial& a) { return a * a; }
+inline Polynomial polynomial(const double* c, int degree, const Polynomial& t) {
+    Polynomial r(c[degree]);
+    for (int k = degree - 1; k >= 0; --k) r = r * t + Polynomial(c[k]);
+    return r;
+}
+
+template <int N>
+void Polynomial::jets(double centre_u, double centre_v, const Interval& u, const Interval& v, JetUV<Interval, 2>* at_centre,
+                      JetUV<Interval, N>* over) const {
+    const double mu = mid(u), mv = mid(v);
+    thread_local std::vector<Interval> a;
+    recentre(Interval(mu) - Interval(centre_u), Interval(mv) - Interval(centre_v), a);
+    const int stride = q_ + 1;
+    if (at_centre)
+        for (int k = 0; k < at_centre->size; ++k) {
+            const auto [i, j] = JetUV<Interval, 2>::powers[k];
+            at_centre->c[k] = i <= p_ && j <= q_ ? a[i * stride + j] : Interval(0);
+        }
+    if (!over) return;
+    const double ru = rad(u), rv = rad(v);
+    // sum over a >= i, b >= j of binomial(a,i) binomial(b,j) c_ab dx^(a-i) dy^(b-j); even powers are not negative.
+    for (int k = 0; k < over->size; ++k) {
+        const auto [i, j] = JetUV<Interval, N>::powers[k];
+        Interval sum(0);
+        double pu = 1;
+        for (int s = i; s <= p_; ++s) {
+            const bool even_u = (s - i) % 2 == 0;
+            double pv = pu;
+            for (int t = j; t <= q_; ++t) {
+                const bool even = even_u && (t - j) % 2 == 0;
+                const double m = rounding::up(pv * (binomial(s, i) * binomial(t, j)));
+                if (s == i && t == j) sum = sum + a[s * stride + t];
+                else sum = sum + a[s * stride + t] * Interval(even ? 0 : -m, m);
+                pv = rounding::up(pv * rv);
+            }
+            pu = rounding::up(pu * ru);
+        }
+        over->c[k] = sum;
+    }
+}
+
+}  // namespace isoparm

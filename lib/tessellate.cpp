@@ -1,0 +1,185 @@
+#include "tessellate.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+#include "error.h"
+#include "refine.h"
+#include "topology.h"
+
+namespace isoparm {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Edges nearer than this are one. The certificate holds whatever it is: vertices are charged their distance from every
+/// patch that uses them. A sixteenth of the tolerance keeps that charge affordable.
+double join_tolerance(double tolerance, double diagonal) { return std::min(1e-6 * diagonal, tolerance / 16); }
+
+[[noreturn]] void give_up(const Refinement& refinement, const TessellationOptions& options, double needed) {
+    std::ostringstream text;
+    text.precision(3);
+    text << "the tolerance " << to_text(options.tolerance) << " was not reached: ";
+    if (needed > double(options.max_triangles))
+        text << "about " << needed << " triangles would be needed (" << needed * 120 / 1e9 << " GB), the budget is " << options.max_triangles;
+    else
+        text << "no progress with " << refinement.triangle_count() << " triangles";
+    text << "; with " << refinement.triangle_count() << " triangles the certified error is " << refinement.worst_bound()
+         << ". Ask for a larger tolerance or raise the budget (--max-triangles).";
+    throw Error(ErrorKind::budget, text.str());
+}
+
+void refine(Refinement& refinement, const TessellationOptions& options) {
+    double start_bound = 0;
+    constexpr int max_rounds = 400;  // every round halves the worst edges; 2 x 52 bits of parameters and room
+    int coincident_rounds = 0;
+    for (int round = 0; round < max_rounds; ++round) {
+        const bool done = refinement.bound_and_mark(options.tolerance);
+        const double needed = std::max(refinement.predicted_triangles(options.tolerance), double(refinement.triangle_count()));
+        // The prediction is good to a small factor once there are some triangles everywhere.
+        const bool hopeless = needed > double(options.max_triangles) && (round > 8 ? needed > 3.0 * double(options.max_triangles) : false);
+        if (hopeless || refinement.triangle_count() > options.max_triangles) give_up(refinement, options, needed);
+        if (done && (coincident_rounds++ > 16 || !refinement.mark_coincident_edges())) return;
+        if (options.progress && !done) {
+            const double worst = refinement.worst_bound();
+            if (round == 0 || !std::isfinite(start_bound)) start_bound = worst;
+            const double all = std::log(start_bound / options.tolerance), left = std::log(worst / options.tolerance);
+            if (std::isfinite(all) && all > 0 && std::isfinite(left)) options.progress(std::clamp(1 - left / all, 0.0, 1.0));
+        }
+        refinement.split_marked();
+    }
+    give_up(refinement, options, 0);
+}
+
+/// Keeps the vertices that a triangle names; number[v] becomes the mesh's number of vertex v, or kNone.
+Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinement& refinement, std::vector<std::uint32_t>& number) {
+    Mesh mesh;
+    number.assign(refinement.positions().size(), kNone);
+    for (std::size_t m = 0; m < surface.size(); ++m) {
+        const PatchMesh& p = refinement.patches()[m];
+        MeshPart part;
+        part.name = surface[m].name;
+        part.member = m;
+        part.uv = p.uv;
+        part.vertex = p.vertex;
+        part.flipped = topology.flipped[m];
+        for (const auto& t : p.triangles) {
+            part.certified_error = std::max(part.certified_error, t.bound);
+            const auto a = p.vertex[t.corner[0]], b = p.vertex[t.corner[1]], c = p.vertex[t.corner[2]];
+            if (a == b || b == c || c == a) continue;  // a collapsed edge: its two long sides are one mesh edge
+            if (part.flipped) part.triangles.push_back({t.corner[0], t.corner[2], t.corner[1]});
+            else part.triangles.push_back(t.corner);
+            for (auto v : {a, b, c}) number[v] = 0;
+        }
+        mesh.parts.push_back(std::move(part));
+    }
+    for (std::size_t i = 0; i < number.size(); ++i)
+        if (number[i] == 0) {
+            number[i] = std::uint32_t(mesh.positions.size());
+            mesh.positions.push_back(refinement.positions()[i]);
+        }
+    for (auto& part : mesh.parts)
+        for (auto& v : part.vertex) v = number[v] == kNone ? 0 : number[v];
+    return mesh;
+}
+
+/// Largest |S - L| at the middle and the edges' middles of every triangle: what a sampling program would report.
+double sampled_error(const Composite& surface, const Mesh& mesh) {
+    static constexpr double at[4][3] = {{1 / 3.0, 1 / 3.0, 1 / 3.0}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}};
+    double worst = 0;
+    for (const auto& part : mesh.parts) {
+        constexpr std::size_t chunk = 1024;
+        std::vector<double> largest((part.triangles.size() + chunk - 1) / chunk, 0.0);
+        tbb::parallel_for(std::size_t(0), largest.size(), [&](std::size_t k) {
+            std::vector<double> u, v;
+            std::vector<Point> flat;
+            for (std::size_t i = k * chunk; i < std::min(part.triangles.size(), (k + 1) * chunk); ++i)
+                for (const auto& w : at) {
+                    double pu = 0, pv = 0;
+                    Point x;
+                    for (int c = 0; c < 3; ++c) {
+                        const auto corner = part.triangles[i][c];
+                        pu += w[c] * part.uv[corner].x;
+                        pv += w[c] * part.uv[corner].y;
+                        x += w[c] * mesh.positions[part.vertex[corner]];
+                    }
+                    u.push_back(pu), v.push_back(pv), flat.push_back(x);
+                }
+            std::vector<Point> exact(u.size());
+            surface[part.member].patch.points(u.size(), u.data(), v.data(), exact.data());
+            for (std::size_t i = 0; i < u.size(); ++i) largest[k] = std::max(largest[k], distance(exact[i], flat[i]));
+        });
+        for (double x : largest) worst = std::max(worst, x);
+    }
+    return worst;
+}
+
+/// (0.3849 I+ + 0.2236 I-) / tolerance, I the integrals of sqrt|K| dA = sqrt|LN - M^2| du dv over K > 0 and K < 0, by the
+/// midpoint rule (Fejes Toth; Gruber; Atariah, Rote and Wintraecken 2018).
+double optimal_triangles(const Patch& patch, double tolerance) {
+    constexpr int n = 32;
+    const Rect r = patch.rect();
+    std::vector<double> us{r.u0}, vs{r.v0};
+    for (double b : patch.breaks_u()) us.push_back(b);
+    for (double b : patch.breaks_v()) vs.push_back(b);
+    us.push_back(r.u1), vs.push_back(r.v1);
+    double convex = 0, saddle = 0;
+    for (std::size_t a = 0; a + 1 < us.size(); ++a)
+        for (std::size_t b = 0; b + 1 < vs.size(); ++b)
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j) {
+                    double u = us[a] + (us[a + 1] - us[a]) * (i + 0.5) / n, v = vs[b] + (vs[b + 1] - vs[b]) * (j + 0.5) / n;
+                    double area = (us[a + 1] - us[a]) * (vs[b + 1] - vs[b]) / (n * n);
+                    if (patch.domain() == Domain::triangle) {  // the square folded onto the triangle
+                        area *= 1 - u;
+                        v *= 1 - u;
+                    }
+                    const PointJet x = patch.jet(u, v);
+                    const auto d = [&](int p, int q) { return Point{x.x.coefficient(p, q), x.y.coefficient(p, q), x.z.coefficient(p, q)}; };
+                    const Point normal = cross(d(1, 0), d(0, 1));
+                    const double size = length(normal);
+                    if (!(size > 0)) continue;
+                    const double L = 2 * dot(d(2, 0), normal) / size, M = dot(d(1, 1), normal) / size, N = 2 * dot(d(0, 2), normal) / size;
+                    const double k = L * N - M * M;
+                    if (!std::isfinite(k)) continue;
+                    (k > 0 ? convex : saddle) += std::sqrt(std::fabs(k)) * area;
+                }
+    return (2 / (3 * std::sqrt(3.0)) * convex + 1 / (2 * std::sqrt(5.0)) * saddle) / tolerance;
+}
+
+}  // namespace
+
+Tessellation tessellate(const Composite& surface, const TessellationOptions& options) {
+    if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) throw_input("found tolerance " + to_text(options.tolerance) + ", expected a positive number");
+    auto start = std::chrono::steady_clock::now();
+    const double diagonal = surface.empty() ? 0 : bounding_box(surface).diagonal();
+    const Topology topology = find_topology(surface, join_tolerance(options.tolerance, diagonal));
+    Refinement refinement(surface, topology);
+    refine(refinement, options);
+
+    Tessellation result;
+    result.tolerance = options.tolerance;
+    std::vector<std::uint32_t> number;
+    result.mesh = to_mesh(surface, topology, refinement, number);
+    std::vector<std::array<std::uint32_t, 2>> open = refinement.open_edges();
+    for (auto& e : open) e = {number[e[0]], number[e[1]]};
+    result.topology = analyse(result.mesh, open);
+    result.seconds_tessellate = seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    for (std::size_t m = 0; m < surface.size(); ++m) {
+        const auto& part = result.mesh.parts[m];
+        result.certified_error = std::max(result.certified_error, part.certified_error);
+        result.surfaces.push_back({part.name, part.triangles.size(), part.certified_error, optimal_triangles(surface[m].patch, options.tolerance)});
+    }
+    result.sampled_error = sampled_error(surface, result.mesh);
+    result.seconds_sample = seconds_since(start);
+    return result;
+}
+
+}  // namespace isoparm

@@ -1,0 +1,61 @@
+// build_composites.cpp -- surfaces that a scene file makes of surfaces, or reads from other files.
+#include <algorithm>
+#include <filesystem>
+
+#include "io/bv.h"
+#include "patches/transformed.h"
+#include "registry.h"
+#include "suggest.h"
+
+namespace isoparm {
+
+namespace {
+constexpr std::size_t kMaxPatches = 100'000;
+
+void append(ControlNet& net, const ControlNet& more) {
+    const int first = static_cast<int>(net.points.size());
+    net.points.insert(net.points.end(), more.points.begin(), more.points.end());
+    for (const auto& rod : more.rods) net.rods.push_back({rod[0] + first, rod[1] + first});
+}
+}  // namespace
+
+// A member with one patch gives it its name, a member with several puts its name before theirs: "body/lid#2".
+BuiltSurface build_composite(const Json& j, SceneBuilder& scene) {
+    BuiltSurface all{Composite{}};
+    std::set<std::string> names;
+    for (const Json& m : scene.values().list(j.at("members", "the surfaces that belong together"), 1, 0, "surfaces")) {
+        const BuiltSurface member = scene.surface(m);
+        const std::string name = m.is(Json::Kind::string) ? m.string() : "#" + std::to_string(names.size());
+        if (!names.insert(name).second) m.fail("found " + quoted(name) + " for the second time, expected every member once");
+        for (const Member& p : member.patches) all.patches.push_back({p.name.empty() ? name : name + "/" + p.name, p.patch});
+        if (all.patches.size() > kMaxPatches) m.fail("found more than " + std::to_string(kMaxPatches) + " patches, expected fewer");
+        append(all.net, member.net);
+    }
+    return all;
+}
+
+BuiltSurface build_transformed_surface(const Json& j, SceneBuilder& scene) {
+    BuiltSurface s = scene.surface(j.at("surface", "the surface to move"));
+    const Transform m = scene.values().transform(j);
+    for (Member& p : s.patches) p.patch = transformed(p.patch, m);
+    for (Point& p : s.net.points) p = m.point(p);
+    return s;
+}
+
+BuiltSurface build_file(const Json& j, SceneBuilder& scene) {
+    const Json path = j.at("path", "the name of a .bv file, relative to the scene");
+    const std::string& name = scene.values().text(path, "the name of a .bv file, relative to the scene");
+    const std::filesystem::path file = std::filesystem::path(j.file()).parent_path() / name;
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension != ".bv") path.expected("a file that ends in .bv (other formats are not built yet)");
+    std::string text;
+    try {
+        text = read_text_file(file.string());
+    } catch (const Error& e) {
+        path.fail("found a file that cannot be used, expected a BV file: " + std::string(e.what()));
+    }
+    return BuiltSurface(read_bv(text, file.string()));
+}
+
+}  // namespace isoparm

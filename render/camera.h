@@ -1,0 +1,38 @@
+// camera.h -- perspective and orthographic cameras.
+#pragma once
+#include <vector>
+
+#include "scene.h"
+
+namespace isoparm {
+
+/// points origin + t direction, t >= 0; direction has unit length.
+struct Ray {
+    Point origin, direction;
+};
+
+/// Looks along `forward`; right, up and forward are orthonormal. Pixels: x to the right, y down, (0,0) is the corner of
+/// the picture's top left pixel, whose middle is (0.5, 0.5).
+struct Camera {
+    Point eye, right, up, forward;
+    bool orthographic = false;
+    double half_height = 1;  // of the view: scene units (orthographic), or at depth 1 (perspective)
+    int width = 1, height = 1;
+
+    Ray ray(double x, double y) const;
+    /// Pixel coordinates of a point in front of the camera.
+    Vec2 project(const Point& p) const;
+    double depth(const Point& p) const { return dot(p - eye, forward); }
+    /// Size of one pixel at a depth, in scene units.
+    double pixel_size(double depth) const { return 2 * half_height / height * (orthographic ? 1 : depth); }
+};
+
+/// The camera that the settings describe. What they leave open is chosen for `drawn`, points of everything that is drawn
+/// (its convex hull, or about): a three-quarter view from the front, right and above with z up, everything inside with a
+/// margin of 6% of the picture. Throws Error(input) when eye and target coincide or a field of view is no such angle.
+Camera make_camera(const CameraSettings& settings, const std::vector<Point>& drawn, int width, int height);
+
+/// Size of a pixel where `box` is nearest to the camera, in scene units.
+double finest_pixel(const Camera& camera, const Bounds& box);
+
+}  // namespace isoparm

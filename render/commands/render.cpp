@@ -1,0 +1,51 @@
+#include <cstdio>
+#include <functional>
+
+#include "commands/options.h"
+#include "commands/render_options.h"
+#include "progress.h"
+
+namespace isoparm {
+
+namespace {
+
+constexpr const char* kHelp = R"(usage: isoparm render SCENE -o IMAGE [--size WxH] [--samples N] [--tolerance T] [--crop x0,y0,x1,y1] ...
+
+Ray-traces a scene from meshes whose error is proved; positions and normals that are shaded are those of the exact
+surfaces. The same scene gives the same bytes, for every number of threads and at any time.
+
+-o IMAGE          .exr (linear), .png (sRGB) and other formats of OpenImageIO; scene, tolerance and certified error are
+                  in the metadata
+--size WxH        width and height in pixels; otherwise the scene's
+--samples N       samples a pixel; otherwise the scene's
+--tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal, 0.25px of the picture; otherwise the scene's
+--crop x0,y0,x1,y1  only these pixels, x0 <= x < x1, y0 <= y < y1, y down
+--reproducible    no dates or host names in the file, which is the case anyway
+--set p=NUMBER    another value of a parameter of the scene; may be repeated
+--quiet           no messages; --threads N  at most N threads
+Not built yet: --exact, --aov.
+)";
+
+int run(const std::vector<std::string>& arguments) {
+    const Options options("render", arguments,
+                          {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}, {"--crop", true}, {"--set", true}, {"--reproducible", false},
+                           {"--exact", false, "rays are traced against certified meshes"}, {"--aov", true, "only the picture itself is written"}});
+    const std::string output = options.required("-o", "the image file to write");
+    RenderOptions how = read_render_options(options);
+    check_image_path(output);
+    const Scene scene = options.scene();
+    const Picture picture = [&] {
+        ProgressBar bar("rendering", options.quiet());
+        how.progress = std::ref(bar);
+        return render(scene, how);
+    }();
+    write_image(output, picture.image, metadata_of(scene, picture));
+    if (!options.quiet()) std::fprintf(stderr, "%s: %s\n", output.c_str(), summary_of(picture).c_str());
+    return kSuccess;
+}
+
+}  // namespace
+
+const Command render_command = {"render", "a ray-traced picture", kHelp, run};
+
+}  // namespace isoparm

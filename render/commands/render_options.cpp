@@ -1,0 +1,65 @@
+#include "commands/render_options.h"
+
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+
+#include "error.h"
+#include "isoparm_version.h"
+#include "suggest.h"
+
+namespace isoparm {
+
+namespace {
+/// Whole numbers with a separator between; nothing when there are not `count` of them.
+std::vector<int> whole_numbers(const std::string& text, char separator, std::size_t count) {
+    std::vector<int> r;
+    const char *at = text.data(), *end = at + text.size();
+    for (;;) {
+        int n = 0;
+        const auto [stop, error] = std::from_chars(at, end, n);
+        if (error != std::errc()) return {};
+        r.push_back(n);
+        if (stop == end) break;
+        if (*stop != separator) return {};
+        at = stop + 1;
+    }
+    return r.size() == count ? r : std::vector<int>{};
+}
+}  // namespace
+
+RenderOptions read_render_options(const Options& options) {
+    RenderOptions how;
+    if (const auto size = options.value("--size")) {
+        const auto n = whole_numbers(*size, 'x', 2);
+        if (n.empty() || n[0] < 1 || n[1] < 1 || n[0] > 32768 || n[1] > 32768) options.fail("--size: found " + quoted(*size) + ", expected WIDTHxHEIGHT, each from 1 to 32768");
+        how.width = n[0];
+        how.height = n[1];
+    }
+    if (const auto samples = options.integer("--samples", 1, 65536)) how.samples = *samples;
+    how.tolerance = options.tolerance();
+    if (const auto crop = options.value("--crop")) {
+        const auto n = whole_numbers(*crop, ',', 4);
+        if (n.empty() || n[0] < 0 || n[1] < 0 || n[2] <= n[0] || n[3] <= n[1]) options.fail("--crop: found " + quoted(*crop) + ", expected x0,y0,x1,y1 with 0 <= x0 < x1, 0 <= y0 < y1");
+        how.crop = {n[0], n[1], n[2], n[3]};
+    }
+    return how;
+}
+
+Metadata metadata_of(const Scene& scene, const Picture& picture) {
+    return {{"Software", "isoparm " ISOPARM_VERSION},
+            {"isoparm:scene", std::filesystem::path(scene.path).filename().string()},
+            {"isoparm:title", scene.title},
+            {"isoparm:tolerance", to_text(picture.tolerance)},
+            {"isoparm:certified_error", to_text(picture.certified_error)},
+            {"isoparm:triangles", std::to_string(picture.triangles)}};
+}
+
+std::string summary_of(const Picture& p) {
+    char text[160];
+    std::snprintf(text, sizeof text, "%dx%d, %zu triangles, certified error %.3g (tolerance %.3g), %.2f s", p.image.width, p.image.height, p.triangles, p.certified_error,
+                  p.tolerance, p.seconds_mesh + p.seconds_trace);
+    return text;
+}
+
+}  // namespace isoparm

@@ -1,0 +1,175 @@
+#include "tessellate.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include "commands/options.h"
+#include "error.h"
+#include "io/atomic_file.h"
+#include "io/mesh_files.h"
+#include "isoparm_version.h"
+#include "json_text.h"
+#include "progress.h"
+#include "suggest.h"
+
+namespace isoparm {
+
+namespace {
+
+constexpr const char* kHelp = R"(usage: isoparm tessellate SCENE -o MESH [--surface S] [--tolerance T] [--report FILE] ...
+
+Triangulates surfaces so that no point of the mesh is farther than the tolerance from the surface, and no point of the
+surface farther than that from the mesh. This is proved, with every rounding error counted, for every triangle; edges
+that patches share are found and share their vertices.
+
+-o MESH           .ply (binary, every double exact), .obj (exact decimals) or .stl (binary, float32)
+--surface S       one surface, or one patch of it, as in teapot/teapot#7; otherwise all surfaces that the scene draws
+--tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal; otherwise the scene's
+--measure M       geometric (default) or parametric. What is proved now is the parametric distance |S(u,v)-L(u,v)|,
+                  which is never less than the geometric one; both names are accepted
+--quality Q       fast; optimal is not built yet
+--vertices V      surface: vertices lie on the surface; free is not built yet
+--max-triangles N the budget, 20000000; beyond it the command ends with exit code 2 and says what was reached
+--report FILE     JSON: triangles, vertices, tolerance, measure, certified_error, sampled_error, boundary_loops,
+                  t_junctions, non_manifold_edges, seconds, surfaces (with the asymptotic optimum of triangles)
+--set p=NUMBER    another value of a parameter of the scene; may be repeated
+--quiet           no messages; --threads N  at most N threads: the mesh is the same for every N
+)";
+
+/// The patches to mesh, and the surface of the scene that each of them belongs to.
+struct Selection {
+    Composite patches;
+    std::vector<std::string> surface;  // one a patch
+};
+
+void add_surface(Selection& all, const std::string& surface, const Composite& patches, bool prefix) {
+    for (const Member& m : patches) {
+        all.patches.push_back({prefix && patches.size() > 1 ? surface + "/" + m.name : m.name, m.patch});
+        all.surface.push_back(surface);
+    }
+}
+
+Selection select(const Scene& scene, const Options& options) {
+    Selection all;
+    if (const auto name = options.value("--surface")) {
+        add_surface(all, *name, find_patches(scene, *name), false);
+        return all;
+    }
+    std::set<std::string> drawn;
+    for (const SceneObject& o : scene.objects)
+        if (o.kind == SceneObject::Kind::surface) drawn.insert(o.name);
+    if (drawn.empty()) throw_input(scene.path + ": found no surface that is drawn, expected one; name one with --surface");
+    for (const Surface& s : scene.surfaces)
+        if (drawn.count(s.name)) add_surface(all, s.name, s.patches, drawn.size() > 1);
+    return all;
+}
+
+double absolute_tolerance(const Tolerance& t, const Composite& patches, const Options& options) {
+    if (t.unit == Tolerance::Unit::pixels) options.fail("a tolerance in pixels needs a picture: give --tolerance in scene units or with rel");
+    return t.unit == Tolerance::Unit::relative ? t.value * bounding_box(patches).diagonal() : t.value;
+}
+
+/// Fails now rather than after the work.
+void check_output(const std::string& path, const Options& options) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".glb") options.fail("-o: .glb is not built yet; expected .ply, .obj or .stl");
+    if (extension != ".ply" && extension != ".obj" && extension != ".stl") options.fail("-o: found " + quoted(path) + ", expected a name that ends in .ply, .obj or .stl");
+}
+
+struct SurfaceSum {
+    std::string name;
+    std::size_t triangles = 0;
+    double certified_error = 0, optimal_triangles = 0;
+    std::string patches;  // JSON
+};
+
+/// The reports of the patches, added up by surface.
+std::vector<SurfaceSum> sums(const Tessellation& t, const Selection& selection) {
+    std::vector<SurfaceSum> all;
+    for (std::size_t k = 0; k < t.surfaces.size(); ++k) {
+        const SurfaceReport& r = t.surfaces[k];
+        const std::string& surface = k < selection.surface.size() ? selection.surface[k] : r.name;
+        if (all.empty() || all.back().name != surface) {
+            all.emplace_back();
+            all.back().name = surface;
+        }
+        SurfaceSum& s = all.back();
+        s.triangles += r.triangles;
+        s.certified_error = std::max(s.certified_error, r.certified_error);
+        s.optimal_triangles += r.optimal_triangles;
+        s.patches += (s.patches.empty() ? "" : ",\n      ") + ("{\"name\": " + json_text(r.name)) + ", \"triangles\": " + std::to_string(r.triangles) +
+                     ", \"certified_error\": " + json_text(r.certified_error) + ", \"optimal_triangles\": " + json_text(r.optimal_triangles) + "}";
+    }
+    return all;
+}
+
+void write_report(std::ostream& out, const Tessellation& t, const Selection& selection, const std::string& measure, double seconds_write) {
+    out << "{\"triangles\": " << t.mesh.triangle_count() << ", \"vertices\": " << t.mesh.positions.size() << ",\n \"tolerance\": " << json_text(t.tolerance)
+        << ", \"measure\": " << json_text(measure) << ", \"certified_error\": " << json_text(t.certified_error) << ", \"sampled_error\": " << json_text(t.sampled_error)
+        << ",\n \"boundary_loops\": " << t.topology.boundary_loops << ", \"boundary_edges\": " << t.topology.boundary_edges << ", \"t_junctions\": " << t.topology.t_junctions
+        << ", \"non_manifold_edges\": " << t.topology.non_manifold_edges << ", \"degenerate_triangles\": " << t.topology.degenerate_triangles
+        << ",\n \"seconds\": {\"tessellate\": " << json_text(t.seconds_tessellate) << ", \"sample\": " << json_text(t.seconds_sample) << ", \"write\": " << json_text(seconds_write)
+        << "},\n \"surfaces\": [";
+    bool first = true;
+    for (const SurfaceSum& s : sums(t, selection)) {
+        out << (first ? "\n  " : ",\n  ") << "{\"name\": " << json_text(s.name) << ", \"triangles\": " << s.triangles << ", \"certified_error\": " << json_text(s.certified_error)
+            << ", \"optimal_triangles\": " << json_text(s.optimal_triangles) << ",\n   \"patches\": [\n      " << s.patches << "]}";
+        first = false;
+    }
+    out << "]}\n";
+}
+
+std::string mesh_comment(const Scene& scene, const Tessellation& t) {
+    return "isoparm " ISOPARM_VERSION "\nscene " + (scene.title.empty() ? std::filesystem::path(scene.path).filename().string() : scene.title) + "\ntolerance " +
+           to_text(t.tolerance) + "\ncertified_error " + to_text(t.certified_error);
+}
+
+int run(const std::vector<std::string>& arguments) {
+    const Options options("tessellate", arguments,
+                          {{"-o", true}, {"--surface", true}, {"--tolerance", true}, {"--measure", true}, {"--quality", true}, {"--vertices", true},
+                           {"--max-triangles", true}, {"--report", true}, {"--set", true}, {"--certificate", true, "the report holds the certified error"}});
+    const std::string output = options.required("-o", "the mesh file to write");
+    check_output(output, options);
+    const std::string measure = options.word("--measure", {"geometric", "parametric"});
+    if (options.word("--quality", {"fast", "optimal"}) != "fast") options.fail("--quality optimal is not built yet");
+    if (options.word("--vertices", {"surface", "free"}) != "surface") options.fail("--vertices free is not built yet");
+    const auto given = options.tolerance();
+
+    const Scene scene = options.scene();
+    const Selection selection = select(scene, options);
+    TessellationOptions how;
+    how.tolerance = absolute_tolerance(given ? *given : scene.tolerance, selection.patches, options);
+    if (!(how.tolerance > 0)) throw_input(scene.path + ": found a surface of size 0, expected one that a relative tolerance can be taken of");
+    if (const auto most = options.integer("--max-triangles", 1, 2'000'000'000)) how.max_triangles = static_cast<std::size_t>(*most);
+    const auto result = [&] {
+        ProgressBar bar("tessellating", options.quiet());
+        how.progress = std::ref(bar);
+        return tessellate(selection.patches, how);
+    }();
+    if (!(result.certified_error <= how.tolerance) || result.topology.t_junctions > 0 || result.topology.non_manifold_edges > 0) {
+        throw Error(ErrorKind::budget, scene.path + ": the mesh is not what was asked for: certified error " + to_text(result.certified_error) + " at tolerance " +
+                                           to_text(how.tolerance) + ", " + std::to_string(result.topology.t_junctions) + " T-junctions, " +
+                                           std::to_string(result.topology.non_manifold_edges) + " non-manifold edges; nothing was written");
+    }
+    const auto start = std::chrono::steady_clock::now();
+    write_mesh(output, result.mesh, mesh_comment(scene, result));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (const auto report = options.value("--report")) {
+        write_atomically(*report, [&](std::ostream& out) { write_report(out, result, selection, measure, seconds); });
+    }
+    if (!options.quiet()) {
+        std::fprintf(stderr, "%s: %zu triangles, %zu vertices, certified error %.3g (tolerance %.3g), %.2f s\n", output.c_str(), result.mesh.triangle_count(),
+                     result.mesh.positions.size(), result.certified_error, result.tolerance, result.seconds_tessellate + result.seconds_sample + seconds);
+    }
+    return kSuccess;
+}
+
+}  // namespace
+
+const Command tessellate_command = {"tessellate", "a mesh whose error is proved, as PLY, OBJ or STL", kHelp, run};
+
+}  // namespace isoparm

@@ -1,0 +1,354 @@
+#include "embree_scene.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <deque>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+namespace isoparm {
+namespace {
+
+/// Subnormal numbers slow traversal down; they are flushed while this lives, on this thread only.
+class FlushSubnormals {
+#if defined(__SSE__)
+public:
+    FlushSubnormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040); }  // FTZ | DAZ
+    ~FlushSubnormals() { _mm_setcsr(before_); }
+
+private:
+    unsigned before_;
+#else
+public:
+    FlushSubnormals() {}
+#endif
+};
+
+struct Geometry {
+    std::uint32_t id = 0;
+    std::uint32_t mesh = 0;  // number of the mesh it is a part of; meaningless for others
+    float opacity = 1;
+    bool solid = false;  // a tube or ball: counts once however often a ray passes through its skin
+};
+
+// ---- Embree 3 and 4 ask the same questions with different words ---------------------------------------------------
+#if RTC_VERSION_MAJOR >= 4
+using Context = RTCRayQueryContext;
+struct Query {
+    Context context;  // first: filters find the query by its address
+    RTCIntersectArguments nearest;
+    RTCOccludedArguments any;
+    explicit Query(bool coherent = false) {
+        rtcInitRayQueryContext(&context);
+        rtcInitIntersectArguments(&nearest);
+        rtcInitOccludedArguments(&any);
+        nearest.context = any.context = &context;
+        if (coherent) nearest.flags = any.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    }
+};
+void intersect_1(RTCScene s, Query& q, RTCRayHit* r) { rtcIntersect1(s, r, &q.nearest); }
+void intersect_16(const int* valid, RTCScene s, Query& q, RTCRayHit16* r) { rtcIntersect16(valid, s, r, &q.nearest); }
+void occluded_1(RTCScene s, Query& q, RTCRay* r) { rtcOccluded1(s, r, &q.any); }
+void occluded_16(const int* valid, RTCScene s, Query& q, RTCRay16* r) { rtcOccluded16(valid, s, r, &q.any); }
+#else
+using Context = RTCIntersectContext;
+struct Query {
+    Context context;
+    explicit Query(bool coherent = false) {
+        rtcInitIntersectContext(&context);
+        if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    }
+};
+void intersect_1(RTCScene s, Query& q, RTCRayHit* r) { rtcIntersect1(s, &q.context, r); }
+void intersect_16(const int* valid, RTCScene s, Query& q, RTCRayHit16* r) { rtcIntersect16(valid, s, &q.context, r); }
+void occluded_1(RTCScene s, Query& q, RTCRay* r) { rtcOccluded1(s, &q.context, r); }
+void occluded_16(const int* valid, RTCScene s, Query& q, RTCRay16* r) { rtcOccluded16(valid, s, &q.context, r); }
+#endif
+
+struct LayerQuery : Query {
+    std::vector<Hit>* hits = nullptr;
+};
+struct ShadowQuery : Query {
+    double transmittance = 1;
+    std::vector<std::uint32_t> solids;
+};
+
+// The two filters refuse every hit of geometry that lets light through, so that Embree goes on to the next; they are
+// called for single rays only.
+void remember_layer(const RTCFilterFunctionNArguments* a) {
+    auto& query = static_cast<LayerQuery&>(*reinterpret_cast<Query*>(a->context));
+    Hit h;
+    h.distance = RTCRayN_tfar(a->ray, a->N, 0);
+    h.geometry = RTCHitN_geomID(a->hit, a->N, 0);
+    h.primitive = RTCHitN_primID(a->hit, a->N, 0);
+    h.u = RTCHitN_u(a->hit, a->N, 0);
+    h.v = RTCHitN_v(a->hit, a->N, 0);
+    h.normal = {RTCHitN_Ng_x(a->hit, a->N, 0), RTCHitN_Ng_y(a->hit, a->N, 0), RTCHitN_Ng_z(a->hit, a->N, 0)};
+    query.hits->push_back(h);
+    a->valid[0] = 0;
+}
+
+void dim_light(const RTCFilterFunctionNArguments* a) {
+    auto& query = static_cast<ShadowQuery&>(*reinterpret_cast<Query*>(a->context));
+    const auto& geometry = *static_cast<const Geometry*>(a->geometryUserPtr);
+    a->valid[0] = 0;
+    if (geometry.solid) {
+        if (std::find(query.solids.begin(), query.solids.end(), geometry.id) != query.solids.end()) return;
+        query.solids.push_back(geometry.id);
+    }
+    query.transmittance *= 1 - static_cast<double>(geometry.opacity);
+}
+
+}  // namespace
+
+struct EmbreeScene::State {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    Point centre;
+    double radius = 0, rounding = 0;
+    bool translucent = false;
+    std::deque<Geometry> geometries;        // Embree keeps pointers to them
+    std::deque<std::vector<float>> shared;  // vertices that Embree reads in place
+
+    ~State() {
+        if (scene) rtcReleaseScene(scene);
+        if (device) rtcReleaseDevice(device);
+    }
+    void check(const char* doing) const {
+        if (const RTCError e = rtcGetDeviceError(device); e != RTC_ERROR_NONE)
+            throw std::runtime_error(std::string("Embree failed while ") + doing +
+                                     (e == RTC_ERROR_OUT_OF_MEMORY ? ": out of memory" : ": error " + std::to_string(e)));
+    }
+    /// A vertex relative to the centre, in float32.
+    void store(const Point& p, double extent, float* out) {
+        const Point q = p - centre;
+        for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(q[i]);
+        rounding = std::max(rounding, length(q - Point(out[0], out[1], out[2])));
+        radius = std::max(radius, length(q) + extent);
+    }
+    std::uint32_t attach(RTCGeometry g, double opacity, bool solid) {
+        const auto mesh = static_cast<std::uint32_t>(shared.size());
+        Geometry& data = geometries.emplace_back(Geometry{0, mesh, static_cast<float>(opacity), solid});
+        rtcSetGeometryUserData(g, &data);
+        if (opacity < 1) {
+            translucent = true;
+            rtcSetGeometryIntersectFilterFunction(g, remember_layer);
+            rtcSetGeometryOccludedFilterFunction(g, dim_light);
+        }
+        rtcCommitGeometry(g);
+        data.id = rtcAttachGeometry(scene, g);
+        rtcReleaseGeometry(g);
+        check("taking over geometry");
+        return data.id;
+    }
+    /// Where the ray enters the ball around the scene: far eyes must not cost float32 its digits.
+    double entry(const Ray& ray) const {
+        const Point o = ray.origin - centre;
+        const double nearest = -dot(o, ray.direction);
+        if (dot(o, o) <= radius * radius) return 0;
+        return std::max(0.0, nearest - 1.01 * radius);
+    }
+    void fill(const Ray& ray, double start, RTCRay& r) const {
+        const Point o = ray.origin - centre + start * ray.direction;
+        r.org_x = static_cast<float>(o.x), r.org_y = static_cast<float>(o.y), r.org_z = static_cast<float>(o.z);
+        r.dir_x = static_cast<float>(ray.direction.x), r.dir_y = static_cast<float>(ray.direction.y), r.dir_z = static_cast<float>(ray.direction.z);
+        r.tnear = 0, r.tfar = std::numeric_limits<float>::infinity(), r.time = 0;
+        r.mask = ~0u, r.id = 0, r.flags = 0;
+    }
+    void fill(const Ray& ray, double start, RTCRay16& r, int i) const {
+        RTCRay one;
+        fill(ray, start, one);
+        r.org_x[i] = one.org_x, r.org_y[i] = one.org_y, r.org_z[i] = one.org_z;
+        r.dir_x[i] = one.dir_x, r.dir_y[i] = one.dir_y, r.dir_z[i] = one.dir_z;
+        r.tnear[i] = one.tnear, r.tfar[i] = one.tfar, r.time[i] = 0;
+        r.mask[i] = one.mask, r.id[i] = 0, r.flags[i] = 0;
+    }
+    /// A ray through an edge may meet the triangles on both sides of it: one hit.
+    bool same_place(const Hit& a, const Hit& b) const {
+        const auto near_edge = [](const Hit& h) { return std::min({h.u, h.v, 1 - h.u - h.v}) < 1e-5; };
+        const Geometry &ga = geometries[a.geometry], &gb = geometries[b.geometry];
+        return !ga.solid && !gb.solid && ga.mesh == gb.mesh && b.distance - a.distance < 1e-6 * radius && near_edge(a) && near_edge(b);
+    }
+    double transmittance(const Ray& ray) const {
+        ShadowQuery query;
+        RTCRay r;
+        fill(ray, entry(ray), r);
+        occluded_1(scene, query, &r);
+        return r.tfar < 0 ? 0 : query.transmittance;
+    }
+};
+
+EmbreeScene::EmbreeScene(const Point& centre) : state_(std::make_unique<State>()) {
+    State& s = *state_;
+    s.centre = centre;
+    const char* config = std::getenv("ISOPARM_EMBREE");  // e.g. "isa=sse4.2", for pictures that are equal on all machines
+    s.device = rtcNewDevice(config ? config : "");
+    if (!s.device) throw std::runtime_error("Embree cannot start (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+    s.scene = rtcNewScene(s.device);
+    rtcSetSceneFlags(s.scene, RTC_SCENE_FLAG_ROBUST);
+    s.check("starting");
+}
+EmbreeScene::~EmbreeScene() = default;
+
+std::uint32_t EmbreeScene::add_mesh(const Mesh& mesh, double opacity) {
+    State& s = *state_;
+    std::vector<float>& vertices = s.shared.emplace_back(3 * mesh.positions.size() + 4);  // Embree may read 16 bytes at once
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) s.store(mesh.positions[i], 0, &vertices[3 * i]);
+    std::uint32_t first = Hit::none;
+    for (const MeshPart& part : mesh.parts) {
+        RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0, 3 * sizeof(float),
+                                   mesh.positions.size());
+        auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                          3 * sizeof(std::uint32_t), part.triangles.size()));
+        if (!index && !part.triangles.empty()) s.check("taking over a mesh");
+        for (const auto& triangle : part.triangles)
+            for (const std::uint32_t corner : triangle) *index++ = part.vertex[corner];
+        const std::uint32_t id = s.attach(g, opacity, false);
+        if (first == Hit::none) first = id;
+    }
+    return first;
+}
+
+std::uint32_t EmbreeScene::add_tubes(const std::vector<std::array<Point, 4>>& pieces, double radius, double opacity) {
+    State& s = *state_;
+    RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE);
+    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 4 * pieces.size()));
+    auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(std::uint32_t), pieces.size()));
+    if (!vertex || !index) s.check("taking over a curve");
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        index[i] = static_cast<std::uint32_t>(4 * i);
+        for (const Point& p : pieces[i]) {
+            s.store(p, radius, vertex);
+            vertex[3] = static_cast<float>(radius);
+            vertex += 4;
+        }
+    }
+    return s.attach(g, opacity, true);
+}
+
+std::uint32_t EmbreeScene::add_balls(const std::vector<Point>& centres, double radius, double opacity) {
+    State& s = *state_;
+    RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), centres.size()));
+    if (!vertex) s.check("taking over points");
+    for (const Point& p : centres) {
+        s.store(p, radius, vertex);
+        vertex[3] = static_cast<float>(radius);
+        vertex += 4;
+    }
+    return s.attach(g, opacity, true);
+}
+
+void EmbreeScene::commit() {
+    rtcCommitScene(state_->scene);
+    state_->check("building its hierarchy");
+}
+
+double EmbreeScene::radius() const { return state_->radius; }
+bool EmbreeScene::translucent() const { return state_->translucent; }
+double EmbreeScene::rounding() const { return state_->rounding; }
+
+void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
+    const State& s = *state_;
+    alignas(64) RTCRayHit16 r;
+    alignas(64) int valid[packet];
+    double start[packet];
+    for (int i = 0; i < packet; ++i) {
+        valid[i] = i < n ? -1 : 0;
+        const Ray& ray = rays[i < n ? i : 0];
+        s.fill(ray, start[i] = s.entry(ray), r.ray, i);
+        r.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    {
+        Query query(true);
+        const FlushSubnormals flush;
+        intersect_16(valid, s.scene, query, &r);
+    }
+    for (int i = 0; i < n; ++i) {
+        Hit& h = hits[i] = Hit{};
+        if (r.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+        h.distance = start[i] + static_cast<double>(r.ray.tfar[i]);
+        h.geometry = r.hit.geomID[i];
+        h.primitive = r.hit.primID[i];
+        h.u = r.hit.u[i];
+        h.v = r.hit.v[i];
+        h.normal = {r.hit.Ng_x[i], r.hit.Ng_y[i], r.hit.Ng_z[i]};
+    }
+}
+
+void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
+    const State& s = *state_;
+    hits.clear();
+    LayerQuery query;
+    query.hits = &hits;
+    RTCRayHit r;
+    const double start = s.entry(ray);
+    s.fill(ray, start, r.ray);
+    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    {
+        const FlushSubnormals flush;
+        intersect_1(s.scene, query, &r);
+    }
+    if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
+        std::erase_if(hits, [&](const Hit& h) { return h.distance > static_cast<double>(r.ray.tfar); });
+        Hit h;
+        h.distance = r.ray.tfar;
+        h.geometry = r.hit.geomID;
+        h.primitive = r.hit.primID;
+        h.u = r.hit.u;
+        h.v = r.hit.v;
+        h.normal = {r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z};
+        hits.push_back(h);
+    }
+    std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+        return std::tie(a.distance, a.geometry, a.primitive) < std::tie(b.distance, b.geometry, b.primitive);
+    });
+    hits.erase(std::unique(hits.begin(), hits.end(), [&](const Hit& a, const Hit& b) { return s.same_place(a, b); }), hits.end());
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        if (s.geometries[hits[i].geometry].solid)
+            hits.erase(std::remove_if(hits.begin() + i + 1, hits.end(), [&](const Hit& h) { return h.geometry == hits[i].geometry; }), hits.end());
+    for (Hit& h : hits) h.distance += start;
+}
+
+void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, double* result) const {
+    const State& s = *state_;
+    std::fill(result, result + n, 1.0);
+    if (active == 0) return;
+    const FlushSubnormals flush;
+    if (s.translucent) {
+        for (int i = 0; i < n; ++i)
+            if (active >> i & 1) result[i] = s.transmittance(rays[i]);
+        return;
+    }
+    alignas(64) RTCRay16 r;
+    alignas(64) int valid[packet];
+    for (int i = 0; i < packet; ++i) {
+        const bool used = i < n && (active >> i & 1);
+        valid[i] = used ? -1 : 0;
+        const Ray& ray = rays[used ? i : std::countr_zero(active)];
+        s.fill(ray, s.entry(ray), r, i);
+    }
+    Query query;
+    occluded_16(valid, s.scene, query, &r);
+    for (int i = 0; i < n; ++i)
+        if (valid[i] && r.tfar[i] < 0) result[i] = 0;
+}
+
+}  // namespace isoparm

@@ -1,0 +1,31 @@
+// image.h -- pixels and files. image_oiio.cpp, the only file that includes OpenImageIO, is a module loaded when an image
+// is first written: linking OpenImageIO would cost every start of the program half a second.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace isoparm {
+
+/// Linear RGBA, alpha premultiplied, rows from the top, float.
+struct Image {
+    int width = 0, height = 0;
+    std::vector<float> pixels;  // 4 * width * height
+    float* at(int x, int y) { return &pixels[4 * (static_cast<std::size_t>(y) * width + x)]; }
+    const float* at(int x, int y) const { return &pixels[4 * (static_cast<std::size_t>(y) * width + x)]; }
+};
+
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+/// EXR: linear half floats, premultiplied. PNG and other 8-bit formats: sRGB transfer, unpremultiplied, rounded; opaque
+/// pictures are written without alpha. Written to a temporary name, read back, synced, renamed. No dates, no command
+/// lines: the same picture gives the same bytes. Throws Error(io), or Error(usage) for an unknown extension.
+void write_image(const std::string& path, const Image& image, const Metadata& metadata);
+
+/// Throws what write_image() would for the extension or a missing folder: before hours of rendering, not after.
+void check_image_path(const std::string& path);
+
+/// The first subimage of any file that OpenImageIO reads, made linear and premultiplied. Throws Error(io).
+Image read_image(const std::string& path);
+
+}  // namespace isoparm

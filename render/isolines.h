@@ -1,0 +1,24 @@
+// isolines.h -- parameter lines of constant width in the picture.
+#pragma once
+#include "camera.h"
+#include "patch.h"
+#include "scene.h"
+
+namespace isoparm {
+
+/// What a sample needs to know of its place on a patch.
+struct PatchPlace {
+    Domain domain = Domain::quad;
+    Rect rect;
+    double u = 0, v = 0;
+    Point du, dv;  // S_u, S_v, finite
+};
+
+/// How much of the line colour covers a sample at `position`, seen along `direction`; 0 off the lines. The distance to the
+/// nearest line is that of the parameter divided by its gradient over the picture (first order), so lines are as wide as
+/// asked wherever the surface is seen from, and fade where they come closer to each other than they are wide.
+/// On triangles a third family w = const joins, as many as the larger of the two others.
+double isoline_cover(const Isolines& lines, const PatchPlace& place, const Camera& camera, const Point& position,
+                     const Point& direction);
+
+}  // namespace isoparm

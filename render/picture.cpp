@@ -1,0 +1,195 @@
+#include "picture.h"
+
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "camera.h"
+#include "error.h"
+#include "sampler.h"
+#include "shade.h"
+#include "surfel.h"
+#include "traced_scene.h"
+
+namespace isoparm {
+namespace {
+
+constexpr int kTile = 16;                // pixels a side
+constexpr double kMeshShare = 0.2;       // of the progress bar
+constexpr int kLargestSize = 1 << 16, kMostSamples = 1 << 16;
+
+struct Rgba {
+    Color color;  // premultiplied
+    double alpha = 0;
+    /// What lies behind, seen through what is here.
+    void add_behind(const Color& c, double opacity) {
+        color += ((1 - alpha) * opacity) * c;
+        alpha += (1 - alpha) * opacity;
+    }
+};
+
+class Tracer {
+public:
+    Tracer(const TracedScene& scene, const Camera& camera, int samples)
+        : scene_(scene), camera_(camera), lighting_(camera), samples_(samples) {}
+
+    Rgba pixel(int x, int y) const {
+        const PixelSampler sampler(x, y, samples_);
+        Rgba sum;
+        for (int first = 0; first < samples_; first += EmbreeScene::packet) {
+            Ray rays[EmbreeScene::packet];
+            const int n = std::min(EmbreeScene::packet, samples_ - first);
+            for (int i = 0; i < n; ++i) {
+                const Vec2 at = filter_(sampler(first + i, 0));
+                rays[i] = camera_.ray(x + 0.5 + at.x, y + 0.5 + at.y);
+            }
+            if (scene_.embree->translucent()) add_layers(sampler, rays, first, n, sum);
+            else add_nearest(sampler, rays, first, n, sum);
+        }
+        return {sum.color / double(samples_), sum.alpha / samples_};
+    }
+
+private:
+    void add_nearest(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba& sum) const {
+        Hit hits[EmbreeScene::packet];
+        Surfel surfels[EmbreeScene::packet];
+        Color light[EmbreeScene::packet];
+        scene_.embree->intersect(rays, n, hits);
+        int found = 0;
+        for (int i = 0; i < n; ++i)
+            if (hits[i].found()) surfels[found++] = surfel(rays[i], hits[i], first + i, 0);
+        lighting_.shade(*scene_.embree, sampler, surfels, found, light);
+        for (int i = 0; i < found; ++i) {
+            Rgba seen;
+            add(surfels[i], light[i], seen);
+            sum.color += seen.color;
+            sum.alpha += seen.alpha;
+        }
+    }
+
+    void add_layers(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba& sum) const {
+        std::vector<Hit> hits;
+        Surfel surfels[EmbreeScene::packet];
+        Color light[EmbreeScene::packet];
+        for (int i = 0; i < n; ++i) {
+            Rgba seen;
+            scene_.embree->layers(rays[i], hits);
+            for (std::size_t next = 0; next < hits.size();) {
+                int found = 0;
+                for (; found < EmbreeScene::packet && next < hits.size(); ++found, ++next)
+                    surfels[found] = surfel(rays[i], hits[next], first + i, static_cast<int>(next));
+                lighting_.shade(*scene_.embree, sampler, surfels, found, light);
+                for (int k = 0; k < found; ++k) add(surfels[k], light[k], seen);
+            }
+            sum.color += seen.color;
+            sum.alpha += seen.alpha;
+        }
+    }
+
+    Surfel surfel(const Ray& ray, const Hit& hit, int sample, int layer) const {
+        Surfel s = surfel_at(scene_, camera_, ray, hit);
+        s.sample = sample;
+        s.dimension = 1 + 2 * layer;
+        return s;
+    }
+    static void add(const Surfel& s, const Color& light, Rgba& seen) {
+        if (s.ink_cover > 0) seen.add_behind(s.ink, s.ink_cover);
+        seen.add_behind(light, s.opacity);
+    }
+
+    const TracedScene& scene_;
+    const Camera& camera_;
+    Lighting lighting_;
+    PixelFilter filter_;
+    int samples_;
+};
+
+struct Area {
+    int x0, y0, x1, y1;
+    int width() const { return x1 - x0; }
+    int height() const { return y1 - y0; }
+};
+
+/// Calls `progress` from the calling thread only, which works on tiles like the others.
+void trace(const Tracer& tracer, const Area& area, const std::optional<Color>& background, const std::function<void(double)>& progress, Image& image) {
+    const int across = (area.width() + kTile - 1) / kTile, tiles = across * ((area.height() + kTile - 1) / kTile);
+    const auto caller = std::this_thread::get_id();
+    std::atomic<int> done{0};
+    tbb::parallel_for(0, tiles, [&](int tile) {
+        const int x0 = area.x0 + kTile * (tile % across), y0 = area.y0 + kTile * (tile / across);
+        for (int y = y0; y < std::min(y0 + kTile, area.y1); ++y)
+            for (int x = x0; x < std::min(x0 + kTile, area.x1); ++x) {
+                Rgba p = tracer.pixel(x, y);
+                if (background) p.add_behind(*background, 1);
+                float* out = image.at(x - area.x0, y - area.y0);
+                for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(p.color[k]);
+                out[3] = background ? 1.0f : static_cast<float>(p.alpha);
+            }
+        const int now = ++done;
+        if (progress && std::this_thread::get_id() == caller) progress(static_cast<double>(now) / tiles);
+    });
+}
+
+int checked_size(int size, const char* what, int most) {
+    if (size < 1 || size > most)
+        throw Error(ErrorKind::usage, std::string("the picture's ") + what + " is " + std::to_string(size) + ", expected 1 to " + std::to_string(most));
+    return size;
+}
+
+Area checked_area(const RenderOptions& options, int width, int height) {
+    if (!options.crop) return {0, 0, width, height};
+    const auto& c = *options.crop;
+    const Area a{c[0], c[1], c[2], c[3]};
+    if (a.x0 < 0 || a.y0 < 0 || a.x1 > width || a.y1 > height || a.x0 >= a.x1 || a.y0 >= a.y1)
+        throw Error(ErrorKind::usage, "the crop " + std::to_string(a.x0) + "," + std::to_string(a.y0) + "," + std::to_string(a.x1) + "," +
+                                          std::to_string(a.y1) + " is no part of a picture of " + std::to_string(width) + "x" + std::to_string(height) +
+                                          " pixels: expected x0,y0,x1,y1 with 0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height");
+    return a;
+}
+
+double in_scene_units(const Tolerance& t, const Camera& camera, const Bounds& box) {
+    const double absolute = t.unit == Tolerance::Unit::absolute   ? t.value
+                            : t.unit == Tolerance::Unit::relative ? t.value * box.diagonal()
+                                                                  : t.value * finest_pixel(camera, box);
+    if (!(absolute > 0) || !std::isfinite(absolute))
+        throw_input("the tolerance comes to " + to_text(absolute) + " scene units, expected more than 0");
+    return absolute;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+Picture render(const Scene& scene, const RenderOptions& options) {
+    const int width = checked_size(options.width ? options.width : scene.image.width, "width", kLargestSize);
+    const int height = checked_size(options.height ? options.height : scene.image.height, "height", kLargestSize);
+    const int samples = checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples);
+    const Area area = checked_area(options, width, height);
+    const Camera camera = make_camera(scene.camera, drawn_points(scene), width, height);
+    const auto part_of_progress = [&](double from, double share) -> std::function<void(double)> {
+        if (!options.progress) return {};
+        return [&options, from, share](double fraction) { options.progress(from + share * fraction); };
+    };
+
+    Picture picture;
+    picture.tolerance = in_scene_units(options.tolerance.value_or(scene.tolerance), camera, bounding_box(scene));
+    auto start = std::chrono::steady_clock::now();
+    const TracedScene traced = build_traced_scene(scene, picture.tolerance, part_of_progress(0, kMeshShare));
+    picture.certified_error = traced.certified_error;
+    picture.triangles = traced.triangles;
+    picture.seconds_mesh = seconds_since(start);
+
+    start = std::chrono::steady_clock::now();
+    picture.image.width = area.width();
+    picture.image.height = area.height();
+    picture.image.pixels.resize(4 * static_cast<std::size_t>(area.width()) * area.height());
+    trace(Tracer(traced, camera, samples), area, scene.image.background, part_of_progress(kMeshShare, 1 - kMeshShare), picture.image);
+    picture.seconds_trace = seconds_since(start);
+    return picture;
+}
+
+}  // namespace isoparm

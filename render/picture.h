@@ -1,0 +1,29 @@
+// picture.h -- a ray-traced picture of a scene.
+#pragma once
+#include <functional>
+#include <string>
+
+#include "image.h"
+#include "scene.h"
+
+namespace isoparm {
+
+struct RenderOptions {
+    int width = 0, height = 0, samples = 0;      // 0: as the scene says
+    std::optional<Tolerance> tolerance;          // none: as the scene says
+    std::optional<std::array<int, 4>> crop;      // x0,y0,x1,y1 in pixels; the picture is then only that part
+    std::function<void(double)> progress;        // fraction done; called from the calling thread
+};
+
+struct Picture {
+    Image image;
+    double tolerance = 0;        // absolute, scene units
+    double certified_error = 0;  // of the meshes that were traced, float rounding included
+    std::size_t triangles = 0;
+    double seconds_mesh = 0, seconds_trace = 0;
+};
+
+/// Deterministic: the same pixels for every number of threads.
+Picture render(const Scene& scene, const RenderOptions& options);
+
+}  // namespace isoparm

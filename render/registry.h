@@ -1,0 +1,51 @@
+// registry.h -- every `type` of a scene file: its keys and what builds it.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene_builder.h"
+
+namespace isoparm {
+
+/// build: null for a type that the format knows and this version does not build yet.
+template <class Built> struct SceneType {
+    const char* name;
+    std::vector<std::string> keys;  // besides "type"
+    Built (*build)(const Json& definition, SceneBuilder& scene);
+};
+std::span<const SceneType<BuiltCurve>> curve_types();
+std::span<const SceneType<BuiltSurface>> surface_types();
+
+// build_curves.cpp
+BuiltCurve build_line(const Json&, SceneBuilder&);
+BuiltCurve build_bezier_curve(const Json&, SceneBuilder&);
+BuiltCurve build_bspline_curve(const Json&, SceneBuilder&);
+BuiltCurve build_hermite_curve(const Json&, SceneBuilder&);
+BuiltCurve build_interpolating_curve(const Json&, SceneBuilder&);
+BuiltCurve build_arc(const Json&, SceneBuilder&);
+BuiltCurve build_formula_curve(const Json&, SceneBuilder&);
+BuiltCurve build_isocurve(const Json&, SceneBuilder&);
+BuiltCurve build_reverse(const Json&, SceneBuilder&);
+BuiltCurve build_segment(const Json&, SceneBuilder&);
+BuiltCurve build_transformed_curve(const Json&, SceneBuilder&);
+
+// build_surfaces.cpp: of points
+BuiltSurface build_bezier_patch(const Json&, SceneBuilder&);
+BuiltSurface build_bspline_patch(const Json&, SceneBuilder&);
+BuiltSurface build_bilinear(const Json&, SceneBuilder&);
+BuiltSurface build_triangle(const Json&, SceneBuilder&);
+BuiltSurface build_bezier_triangle(const Json&, SceneBuilder&);
+
+// build_coons.cpp: of curves
+BuiltSurface build_coons(const Json&, SceneBuilder&);
+BuiltSurface build_coons_hermite(const Json&, SceneBuilder&);
+BuiltSurface build_network(const Json&, SceneBuilder&);
+BuiltSurface build_coons_triangle(const Json&, SceneBuilder&);
+
+// build_composites.cpp: of surfaces
+BuiltSurface build_composite(const Json&, SceneBuilder&);
+BuiltSurface build_transformed_surface(const Json&, SceneBuilder&);
+BuiltSurface build_file(const Json&, SceneBuilder&);
+
+}  // namespace isoparm

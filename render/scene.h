@@ -1,0 +1,89 @@
+// scene.h -- a scene as a value: what a scene file says, resolved, with nothing left to look up.
+#pragma once
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "composite.h"
+#include "curve.h"
+
+namespace isoparm {
+
+using Color = Vec3<double>;  // linear RGB inside the program; scene files give sRGB values in [0,1]
+
+/// A named surface: one patch, or the members of a composite or of an imported file.
+struct Surface {
+    std::string name, type;
+    Composite patches;
+    std::string detail;  // for people: "degree 3 x 3, rational"
+};
+
+/// Lines u = const and v = const drawn on a surface: how many of each (ends included), in equal steps of the domain.
+struct Isolines {
+    int u = 0, v = 0;
+    double width = 1.2;  // pixels of the picture
+    Color color{0, 0, 0};
+    double opacity = 0.55;
+};
+
+/// Points to join by straight rods: rows of a control net, a polygon of poles.
+struct ControlNet {
+    std::vector<Point> points;
+    std::vector<std::array<int, 2>> rods;
+};
+
+struct SceneObject {
+    enum class Kind { surface, curve, net, point } kind = Kind::surface;
+    std::string name;              // of the surface or curve
+    std::string label;
+    std::optional<Color> color;    // default by kind
+    double opacity = 1;
+    std::optional<double> radius;  // of tubes, rods and balls, scene units; default a fraction of the scene's size
+    Isolines isolines;
+    bool boundary = false;         // draw the patches' boundary curves as tubes
+    Point point;                   // Kind::point
+    ControlNet net;                // Kind::net
+};
+
+struct CameraSettings {
+    std::optional<Point> eye, target, up;
+    double fov = 35;                     // vertical, degrees
+    std::optional<double> orthographic;  // height of the view in scene units; 0: fitted
+    bool fit = false;                    // move back (or zoom) until everything is inside, keeping the direction
+};
+
+struct ImageSettings {
+    int width = 1024, height = 768, samples = 64;
+    std::optional<Color> background;  // none: transparent
+};
+
+struct Tolerance {
+    enum class Unit { absolute, relative, pixels } unit = Unit::relative;
+    double value = 1e-4;  // relative: of the bounding-box diagonal
+};
+
+struct Scene {
+    std::string path, title, source;
+    std::map<std::string, double> parameters;
+    std::vector<std::pair<std::string, Curve>> curves;  // in the order of the file
+    std::vector<Surface> surfaces;
+    std::vector<SceneObject> objects;
+    CameraSettings camera;
+    ImageSettings image;
+    Tolerance tolerance;
+
+    /// nullptr when there is none of that name.
+    const Surface* find_surface(const std::string& name) const;
+    const Curve* find_curve(const std::string& name) const;
+};
+
+/// Box around everything that is drawn (all surfaces and curves when nothing is).
+Bounds bounding_box(const Scene& scene);
+
+/// Reads and checks a scene file. Throws Error(input) with "path:line:column: at $.json.path: found ..., expected ...".
+/// `overrides` are --set values of parameters.
+Scene load_scene(const std::string& path, const std::map<std::string, double>& overrides = {});
+
+}  // namespace isoparm

@@ -1,0 +1,62 @@
+// scene_builder.h -- curves and surfaces of a scene by name: built once, in any order, cycles refused.
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "json.h"
+#include "scene.h"
+#include "scene_values.h"
+
+namespace isoparm {
+
+struct BuiltCurve {
+    BuiltCurve(Curve c, ControlNet n = {}) : curve(std::move(c)), net(std::move(n)) {}  // NOLINT: a curve without a net
+    Curve curve;
+    ControlNet net;  // empty where the type has no control points
+};
+struct BuiltSurface {
+    BuiltSurface(Patch p, ControlNet n = {}) : patches{{"", std::move(p)}}, net(std::move(n)) {}  // NOLINT
+    explicit BuiltSurface(Composite c, ControlNet n = {}) : patches(std::move(c)), net(std::move(n)) {}
+    Composite patches;  // one patch has the name "" until its surface gets one
+    ControlNet net;
+    std::string detail;
+};
+
+class SceneBuilder {
+public:
+    SceneBuilder(const Json& root, SceneValues values);
+
+    const SceneValues& values() const { return values_; }
+    /// A curve or surface given by its name or on the spot.
+    BuiltCurve curve(const Json& reference);
+    BuiltSurface surface(const Json& reference);
+    /// A definition under "curves" or "surfaces".
+    BuiltCurve named_curve(const Json& definition);
+    BuiltSurface named_surface(const Json& definition);
+    /// A surface that must be one patch.
+    Patch patch(const Json& reference);
+    std::vector<Curve> curves(const Json& list, std::size_t least, std::size_t most);
+
+    std::vector<std::string> curve_names() const;
+    std::vector<std::string> surface_names() const;
+    /// Surfaces that another one was made of.
+    const std::set<std::string>& used_surfaces() const { return used_; }
+
+private:
+    BuiltCurve build_curve(const Json& definition);
+    BuiltSurface build_surface(const Json& definition);
+    template <class Built, class Build>
+    Built by_name(const char* what, const std::string& name, const Json& reference, const std::vector<Json>& definitions,
+                  std::map<std::string, Built>& built, Build build);
+
+    SceneValues values_;
+    std::vector<Json> curves_, surfaces_;  // definitions, in the order of the file
+    std::map<std::string, BuiltCurve> built_curves_;
+    std::map<std::string, BuiltSurface> built_surfaces_;
+    std::vector<std::string> in_progress_;
+    std::set<std::string> used_;
+};
+
+}  // namespace isoparm

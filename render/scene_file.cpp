@@ -1,0 +1,267 @@
+// scene_file.cpp -- a scene from its file: parameters, curves, surfaces, what is drawn, and how.
+#include <algorithm>
+#include <cmath>
+
+#include "json.h"
+#include "scene.h"
+#include "scene_builder.h"
+#include "scene_values.h"
+#include "suggest.h"
+
+namespace isoparm {
+
+namespace {
+
+using Kind = Json::Kind;
+
+void must_be_object(const Json& j, const std::string& what) {
+    if (!j.is(Kind::object)) j.expected(what);
+}
+
+// ---- parameters -----------------------------------------------------------------------------------------------------
+
+struct Parameter {
+    double value, least = -INFINITY, most = INFINITY;
+};
+
+Parameter read_parameter(const Json& j, const SceneValues& values) {
+    Parameter p{};
+    if (!j.is(Kind::object)) {
+        p.value = values.number(j, "a number, or {\"value\": number}");
+        return p;
+    }
+    j.allow_keys({"value", "min", "max", "label"});
+    if (const auto label = j.find("label")) values.text(*label, "a text");
+    const auto least = j.find("min"), most = j.find("max");
+    if (least) p.least = values.number(*least);
+    if (most) p.most = values.number(*most);
+    if (p.least > p.most) least->fail("found min " + to_text(p.least) + " above max " + to_text(p.most) + ", expected min <= max");
+    const Json value = j.at("value", "the value of the parameter");
+    p.value = values.number(value);
+    if (p.value < p.least || p.value > p.most) value.fail("found " + to_text(p.value) + ", expected a value from " + to_text(p.least) + " to " + to_text(p.most));
+    return p;
+}
+
+/// Later parameters may use earlier ones.
+void read_parameters(const Json& root, const std::map<std::string, double>& overrides, SceneValues& values) {
+    const auto list = root.find("parameters");
+    std::vector<std::string> names;
+    if (list) {
+        must_be_object(*list, "an object of named parameters");
+        for (const Json& j : list->children()) {
+            const std::string& name = j.key();
+            if (!Expression::valid_name(name)) j.fail_at_key("found the name " + quoted(name) + ", expected letters, digits and _ only, not beginning with a digit");
+            if (Expression::reserved(name)) j.fail_at_key("found the name " + quoted(name) + ", expected one that expressions do not use already");
+            Parameter p = read_parameter(j, values);
+            if (const auto set = overrides.find(name); set != overrides.end()) {
+                p.value = set->second;
+                if (!(p.value >= p.least && p.value <= p.most)) {
+                    throw Error(ErrorKind::usage, "--set " + name + "=" + to_text(p.value) + ": expected a value from " + to_text(p.least) + " to " + to_text(p.most));
+                }
+            }
+            values.parameters[name] = p.value;
+            names.push_back(name);
+        }
+    }
+    for (const auto& set : overrides) {
+        if (values.parameters.count(set.first)) continue;
+        throw Error(ErrorKind::usage, "--set " + set.first + ": " + root.file() + " has no such parameter (has: " + listed(names) + ")" + did_you_mean(set.first, names));
+    }
+}
+
+// ---- objects --------------------------------------------------------------------------------------------------------
+
+Isolines read_isolines(const Json& j, const SceneValues& values) {
+    must_be_object(j, "isolines {\"u\": count, \"v\": count}");
+    j.allow_keys({"u", "v", "width", "color", "opacity"});
+    Isolines lines;
+    if (const auto u = j.find("u")) lines.u = values.integer(*u, 0, 1000, "a number of lines");
+    if (const auto v = j.find("v")) lines.v = values.integer(*v, 0, 1000, "a number of lines");
+    if (const auto width = j.find("width")) lines.width = values.positive(*width, "a positive width in pixels");
+    if (const auto color = j.find("color")) lines.color = values.color(*color);
+    if (const auto opacity = j.find("opacity")) lines.opacity = values.in_range(*opacity, 0, 1, "an opacity from 0 to 1");
+    return lines;
+}
+
+ControlNet net_named(const Json& name, SceneBuilder& builder) {
+    const std::string& wanted = builder.values().text(name, "the name of a surface or curve with control points");
+    std::vector<std::string> names = builder.surface_names();
+    const bool surface = std::find(names.begin(), names.end(), wanted) != names.end();
+    const auto curves = builder.curve_names();
+    names.insert(names.end(), curves.begin(), curves.end());
+    if (std::find(names.begin(), names.end(), wanted) == names.end()) {
+        name.expected("the name of a surface or curve (have: " + listed(names) + ")" + did_you_mean(wanted, names));
+    }
+    ControlNet net = surface ? builder.surface(name).net : builder.curve(name).net;
+    if (net.points.empty()) name.expected("a surface or curve with control points (bezier, bspline, bezier_triangle, line ...)");
+    return net;
+}
+
+SceneObject read_object(const Json& j, SceneBuilder& builder) {
+    const SceneValues& values = builder.values();
+    const std::string kinds = "an object with one of the keys surface, curve, net or point";
+    must_be_object(j, kinds);
+    const auto surface = j.find("surface"), curve = j.find("curve"), net = j.find("net"), point = j.find("point");
+    if (!!surface + !!curve + !!net + !!point != 1) j.fail("found " + std::to_string(!!surface + !!curve + !!net + !!point) + " of the keys surface, curve, net and point, expected one of them");
+
+    SceneObject o;
+    if (surface) {
+        j.allow_keys({"surface", "color", "opacity", "isolines", "boundary", "radius", "label"});
+        o.kind = SceneObject::Kind::surface;
+        o.name = values.text(*surface, "the name of a surface");
+        builder.surface(*surface);
+        if (const auto lines = j.find("isolines")) o.isolines = read_isolines(*lines, values);
+        if (const auto boundary = j.find("boundary")) o.boundary = values.boolean(*boundary);
+    } else if (curve) {
+        j.allow_keys({"curve", "color", "opacity", "radius", "label"});
+        o.kind = SceneObject::Kind::curve;
+        o.name = values.text(*curve, "the name of a curve");
+        builder.curve(*curve);
+    } else if (net) {
+        j.allow_keys({"net", "color", "opacity", "radius", "label"});
+        o.kind = SceneObject::Kind::net;
+        o.net = net_named(*net, builder);
+        o.name = net->string();
+    } else {
+        j.allow_keys({"point", "color", "opacity", "radius", "label"});
+        o.kind = SceneObject::Kind::point;
+        o.point = values.point(*point);
+    }
+    if (const auto label = j.find("label")) o.label = values.text(*label, "a text");
+    if (const auto color = j.find("color")) o.color = values.color(*color);
+    if (const auto opacity = j.find("opacity")) o.opacity = values.in_range(*opacity, 0, 1, "an opacity from 0 to 1");
+    if (const auto radius = j.find("radius")) o.radius = values.positive(*radius, "a positive radius in scene units");
+    return o;
+}
+
+/// What a scene without objects shows: the surfaces that no other is made of; if there are none, its curves.
+std::vector<SceneObject> default_objects(const Scene& scene, const std::set<std::string>& used) {
+    std::vector<SceneObject> objects;
+    const auto add = [&](SceneObject::Kind kind, const std::string& name) {
+        objects.emplace_back();
+        objects.back().kind = kind;
+        objects.back().name = name;
+    };
+    for (const Surface& s : scene.surfaces)
+        if (!used.count(s.name)) add(SceneObject::Kind::surface, s.name);
+    if (objects.empty())
+        for (const auto& c : scene.curves) add(SceneObject::Kind::curve, c.first);
+    return objects;
+}
+
+// ---- camera, image, tolerance ---------------------------------------------------------------------------------------
+
+CameraSettings read_camera(const Json& j, const SceneValues& values) {
+    must_be_object(j, "a camera {\"eye\": ..., \"target\": ...}");
+    j.allow_keys({"eye", "target", "up", "fov", "orthographic", "fit"});
+    CameraSettings camera;
+    if (const auto eye = j.find("eye")) camera.eye = values.point(*eye);
+    if (const auto target = j.find("target")) camera.target = values.point(*target);
+    const auto up = j.find("up"), fov = j.find("fov"), orthographic = j.find("orthographic");
+    if (up) camera.up = values.point(*up);
+    if (up && !(length(*camera.up) > 0)) up->expected("a direction that is not zero");
+    if (fov && orthographic) fov->fail_at_key("found both \"fov\" and \"orthographic\", expected one of them");
+    if (fov) camera.fov = values.number(*fov, "an angle in degrees");
+    if (!(camera.fov > 0.01 && camera.fov < 179)) fov->fail("found " + to_text(camera.fov) + ", expected an angle from 0.01 to 179 degrees");
+    if (orthographic) {
+        if (orthographic->is(Kind::boolean)) {
+            if (orthographic->boolean()) camera.orthographic = 0;
+        } else {
+            camera.orthographic = values.positive(*orthographic, "the height of the view in scene units, or true");
+        }
+    }
+    if (const auto fit = j.find("fit")) camera.fit = values.boolean(*fit);
+    if (camera.eye && camera.target) {
+        const Point view = *camera.target - *camera.eye;
+        if (!(length(view) > 0)) j.find("eye")->fail("found the eye at the target, expected different points");
+        if (camera.up && !(length(cross(view, *camera.up)) > 1e-12 * length(view) * length(*camera.up))) {
+            up->fail("found an up direction along the view, expected another one");
+        }
+    }
+    return camera;
+}
+
+ImageSettings read_image(const Json& j, const SceneValues& values) {
+    must_be_object(j, "an image {\"width\": ..., \"height\": ...}");
+    j.allow_keys({"width", "height", "samples", "background"});
+    ImageSettings image;
+    if (const auto width = j.find("width")) image.width = values.integer(*width, 1, 32768, "a width in pixels");
+    if (const auto height = j.find("height")) image.height = values.integer(*height, 1, 32768, "a height in pixels");
+    if (const auto samples = j.find("samples")) image.samples = values.integer(*samples, 1, 65536, "a number of samples a pixel");
+    if (const auto background = j.find("background")) {
+        if (!(background->is(Kind::string) && background->string() == "transparent")) image.background = values.color(*background);
+    } else {
+        image.background = Color{1, 1, 1};
+    }
+    return image;
+}
+
+Tolerance read_tolerance(const Json& j, const SceneValues& values) {
+    must_be_object(j, "{\"tolerance\": ...}");
+    j.allow_keys({"tolerance"});
+    const Json t = j.at("tolerance", "the tolerance: a number, {\"pixels\": p} or {\"relative\": r}");
+    if (!t.is(Kind::object)) return {Tolerance::Unit::absolute, values.positive(t, "a positive tolerance")};
+    t.allow_keys({"pixels", "relative"});
+    const auto pixels = t.find("pixels"), relative = t.find("relative");
+    if (!!pixels + !!relative != 1) t.expected("{\"pixels\": p} or {\"relative\": r}");
+    if (pixels) return {Tolerance::Unit::pixels, values.positive(*pixels, "a positive number of pixels")};
+    return {Tolerance::Unit::relative, values.positive(*relative, "a positive fraction of the bounding-box diagonal")};
+}
+
+// ---- the whole ------------------------------------------------------------------------------------------------------
+
+void check_version(const Json& root) {
+    const Json version = root.at("isoparm", "\"isoparm\": 1, the version of the format");
+    if (!version.is(Kind::number) || version.number() != 1) version.expected("1, the version of the format that this program reads");
+}
+
+/// A single patch takes the name of its surface.
+Surface finished(const std::string& name, const std::string& type, BuiltSurface built) {
+    for (Member& m : built.patches)
+        if (m.name.empty()) m.name = name;
+    return {name, type, std::move(built.patches), built.detail};
+}
+
+Scene read_scene(const Json& root, const std::map<std::string, double>& overrides) {
+    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "camera", "image", "tessellation"});
+    check_version(root);
+    SceneValues values;
+    read_parameters(root, overrides, values);
+
+    Scene scene;
+    scene.path = root.file();
+    scene.parameters = values.parameters;
+    if (const auto schema = root.find("$schema")) values.text(*schema, "the place of the schema");
+    if (const auto title = root.find("title")) scene.title = values.text(*title, "a text");
+    if (const auto source = root.find("source")) scene.source = values.text(*source, "a text");
+
+    SceneBuilder builder(root, values);
+    for (const char* key : {"curves", "surfaces"}) {
+        const auto list = root.find(key);
+        if (!list) continue;
+        const bool curves = key[0] == 'c';
+        for (const Json& definition : list->children()) {
+            const std::string& name = definition.key();
+            if (curves) scene.curves.emplace_back(name, builder.named_curve(definition).curve);
+            else scene.surfaces.push_back(finished(name, definition.find("type")->string(), builder.named_surface(definition)));
+        }
+    }
+    if (const auto objects = root.find("objects")) {
+        if (!objects->is(Kind::array)) objects->expected("an array of objects to draw");
+        for (const Json& o : objects->children()) scene.objects.push_back(read_object(o, builder));
+    }
+    if (scene.objects.empty()) scene.objects = default_objects(scene, builder.used_surfaces());
+    scene.image.background = Color{1, 1, 1};
+    if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera, values);
+    if (const auto image = root.find("image")) scene.image = read_image(*image, values);
+    if (const auto tessellation = root.find("tessellation")) scene.tolerance = read_tolerance(*tessellation, values);
+    return scene;
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& path, const std::map<std::string, double>& overrides) {
+    return read_scene(Json::parse(read_text_file(path), path), overrides);
+}
+
+}  // namespace isoparm

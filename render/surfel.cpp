@@ -1,0 +1,76 @@
+#include "surfel.h"
+
+#include <algorithm>
+
+#include "isolines.h"
+
+namespace isoparm {
+namespace {
+
+Point derivative(const PointJet& j, int i, int k) { return {j.x.coefficient(i, k), j.y.coefficient(i, k), j.z.coefficient(i, k)}; }
+
+/// Parameters of the hit: those of the corners, weighted as the hit is.
+Vec2 parameters(const Patch& patch, const MeshPart& part, const std::array<std::uint32_t, 3>& corners, const Hit& hit) {
+    const Vec2 &a = part.uv[corners[0]], &b = part.uv[corners[1]], &c = part.uv[corners[2]];
+    const double w = 1 - hit.u - hit.v;
+    const Rect r = patch.rect();
+    Vec2 p{std::clamp(w * a.x + hit.u * b.x + hit.v * c.x, r.u0, r.u1), std::clamp(w * a.y + hit.u * b.y + hit.v * c.y, r.v0, r.v1)};
+    if (patch.domain() == Domain::triangle && p.x + p.y > 1) p.y = 1 - p.x;
+    return p;
+}
+
+/// Unit; not yet turned to the viewer. `otherwise` where the patch has no normal.
+Point normal_of(const Patch& patch, const PointJet& jet, const Point& du, const Point& dv, const Vec2& at, const Point& otherwise) {
+    const Point n = cross(du, dv);
+    const double nn = dot(n, n);
+    if (nn > 1e-18 * dot(du, du) * dot(dv, dv) && std::isfinite(nn)) return n / std::sqrt(nn);
+    return unit_normal(patch, jet, at.x, at.y).value_or(otherwise);
+}
+
+/// A mesh's silhouette shows the surface a little beyond its own: bent just enough to face the viewer.
+Point facing(const Point& normal, const Point& view) {
+    constexpr double kLeast = 0.01;
+    const double c = dot(normal, view);
+    return c >= kLeast ? normal : normalized(normal + (kLeast - c) * view);
+}
+
+}  // namespace
+
+Surfel surfel_at(const TracedScene& scene, const Camera& camera, const Ray& ray, const Hit& hit) {
+    const Thing& thing = scene.things[hit.geometry];
+    const double clear = 4e-6 * scene.embree->radius() + thing.error;
+    Surfel s;
+    s.view = -ray.direction;
+    s.opacity = thing.opacity;
+    if (!thing.patch) {
+        const Point n = normalized(hit.normal);
+        s.normal = facing(dot(n, s.view) < 0 ? -n : n, s.view);
+        s.origin = ray.origin + hit.distance * ray.direction + clear * s.normal;
+        s.color = thing.front;
+        return s;
+    }
+    const auto& corners = thing.part->triangles[hit.primitive];
+    const auto vertex = [&](int i) -> const Point& { return thing.mesh->positions[thing.part->vertex[corners[i]]]; };
+    const Point e1 = vertex(1) - vertex(0), e2 = vertex(2) - vertex(0), on_mesh = vertex(0) + hit.u * e1 + hit.v * e2;
+    const Point outward = normalized(cross(e1, e2));
+    const bool toward = dot(outward, s.view) >= 0, front = toward != thing.inside_out;
+    const Point geometric = toward ? outward : -outward;
+
+    const Vec2 at = parameters(*thing.patch, *thing.part, corners, hit);
+    const PointJet jet = thing.patch->jet(at.x, at.y);
+    const Point du = derivative(jet, 1, 0), dv = derivative(jet, 0, 1);
+    Point position = derivative(jet, 0, 0);
+    if (!finite(position)) position = on_mesh;
+    const Point n = normal_of(*thing.patch, jet, du, dv, at, geometric);
+    s.normal = facing(dot(n, geometric) < 0 ? -n : n, s.view);
+    // Above both the surface and the mesh: no facet shadows its own surface.
+    s.origin = position + (clear + std::max(0.0, dot(on_mesh - position, s.normal))) * s.normal;
+    s.color = front ? thing.front : thing.back;
+    if (finite(du) && finite(dv)) {
+        s.ink = thing.isolines.color;
+        s.ink_cover = isoline_cover(thing.isolines, {thing.patch->domain(), thing.patch->rect(), at.x, at.y, du, dv}, camera, position, ray.direction);
+    }
+    return s;
+}
+
+}  // namespace isoparm

@@ -1,0 +1,12 @@
+// surfel.h -- from a hit of the mesh to the point of the exact surface that it stands for.
+#pragma once
+#include "shade.h"
+#include "traced_scene.h"
+
+namespace isoparm {
+
+/// Position and normal are those of the patch at the hit's parameters, in double, with the limit normal at poles and
+/// apexes and the mesh's where there is none.
+Surfel surfel_at(const TracedScene& scene, const Camera& camera, const Ray& ray, const Hit& hit);
+
+}  // namespace isoparm

@@ -1,0 +1,275 @@
+#include "traced_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "error.h"
+#include "palette.h"
+#include "tessellate.h"
+#include "tubes.h"
+
+namespace isoparm {
+namespace {
+
+// Default radii, as parts of the diagonal of the scene's box.
+constexpr double kTube = 0.004, kRod = 0.0022, kBall = 0.012;
+constexpr double kNetBall = 2.2;  // balls of a net, in radii of its rods
+
+const Surface& surface_of(const Scene& scene, const SceneObject& o) {
+    if (const Surface* s = scene.find_surface(o.name)) return *s;
+    throw_input("there is no surface named \"" + o.name + "\" to draw");
+}
+const Curve& curve_of(const Scene& scene, const SceneObject& o) {
+    if (const Curve* c = scene.find_curve(o.name)) return *c;
+    throw_input("there is no curve named \"" + o.name + "\" to draw");
+}
+
+double default_radius(const SceneObject& o, double size) {
+    const double part = o.kind == SceneObject::Kind::net ? kRod : o.kind == SceneObject::Kind::point ? kBall : kTube;
+    return o.radius.value_or(part * size);
+}
+
+/// Whether the triangles wind about the hollow side. The front of what is closed, or nearly, is its outside, and of a dome
+/// its convex side: that from which the signed volume over the middle is positive. A sheet that is neither keeps its own.
+bool inside_out(const Mesh& mesh) {
+    double volume = 0, area = 0;
+    Point middle;
+    const auto each = [&](auto use) {
+        for (const MeshPart& part : mesh.parts)
+            for (const auto& t : part.triangles) {
+                const Point &a = mesh.positions[part.vertex[t[0]]], &b = mesh.positions[part.vertex[t[1]]], &c = mesh.positions[part.vertex[t[2]]];
+                use(a, b, c, 0.5 * cross(b - a, c - a));
+            }
+    };
+    each([&](const Point& a, const Point& b, const Point& c, const Point& n) {
+        area += length(n);
+        middle += (length(n) / 3) * (a + b + c);
+    });
+    if (!(area > 0)) return false;
+    middle = middle / area;
+    each([&](const Point& a, const Point&, const Point&, const Point& n) { volume += dot(a - middle, n) / 3; });
+    return volume < -1e-3 * std::pow(area, 1.5);
+}
+
+class Builder {
+public:
+    Builder(const Scene& scene, double tolerance, const std::function<void(double)>& progress)
+        : scene_(scene), tolerance_(tolerance), progress_(progress) {
+        const Bounds box = bounding_box(scene);
+        size_ = box.diagonal() > 0 ? box.diagonal() : 1;
+        result_.embree = std::make_unique<EmbreeScene>(0.5 * (box.low + box.high));
+    }
+
+    TracedScene run() {
+        const auto objects = drawn_objects(scene_);
+        for (done_ = 0; done_ < objects.size(); ++done_) {
+            report(0, objects.size());
+            add(objects[done_], objects.size());
+        }
+        result_.embree->commit();
+        // The traced mesh is the certified one moved by the rounding of its vertices.
+        if (result_.triangles > 0) result_.certified_error += result_.embree->rounding();
+        for (Thing& thing : result_.things)
+            if (thing.patch) thing.error += result_.embree->rounding();
+        return std::move(result_);
+    }
+
+private:
+    void add(const SceneObject& o, std::size_t objects) {
+        switch (o.kind) {
+            case SceneObject::Kind::surface: return add_surface(o, objects);
+            case SceneObject::Kind::curve:
+                add_curves(o, {drawn(curve_of(scene_, o))}, o.color.value_or(curve_color()), o.opacity);
+                return;
+            case SceneObject::Kind::net: return add_net(o);
+            case SceneObject::Kind::point:
+                add_balls({o.point}, default_radius(o, size_), o.color.value_or(point_color()), o.opacity);
+        }
+    }
+
+    void add_surface(const SceneObject& o, std::size_t objects) {
+        const Surface& surface = surface_of(scene_, o);
+        const Mesh& mesh = mesh_of(surface, objects);
+        Thing thing;
+        thing.front = o.color.value_or(surface_color(surfaces_++));
+        thing.back = back_color(thing.front);
+        thing.opacity = o.opacity;
+        thing.isolines = o.isolines;
+        thing.mesh = &mesh;
+        thing.inside_out = inside_out(mesh);
+        if (o.opacity > 0) {
+            result_.embree->add_mesh(mesh, o.opacity);
+            for (const MeshPart& part : mesh.parts) {
+                thing.part = &part;
+                thing.patch = &surface.patches[part.member].patch;
+                thing.error = part.certified_error;
+                result_.things.push_back(thing);
+            }
+        }
+        if (o.boundary) add_boundary(o, surface);
+    }
+
+    const Mesh& mesh_of(const Surface& surface, std::size_t objects) {
+        const Mesh*& known = mesh_of_[&surface];
+        if (known) return *known;
+        TessellationOptions options;
+        options.tolerance = tolerance_;
+        options.progress = [&](double fraction) { report(fraction, objects); };
+        Tessellation t = [&] {
+            try {
+                return tessellate(surface.patches, options);
+            } catch (const Error& e) {
+                throw Error(e.kind(), "surface \"" + surface.name + "\": " + e.what());
+            }
+        }();
+        result_.certified_error = std::max(result_.certified_error, t.certified_error);
+        result_.triangles += t.mesh.triangle_count();
+        return *(known = &result_.meshes.emplace_back(std::move(t.mesh)));
+    }
+
+    void add_boundary(const SceneObject& o, const Surface& surface) {
+        std::vector<DrawnCurve> edges;
+        std::vector<std::array<Point, 3>> seen;  // shared edges are drawn once
+        const auto same = [&](const Point& a, const Point& b) { return distance(a, b) <= 1e-7 * size_; };
+        for (const Member& m : surface.patches)
+            for (int k = 0; k < m.patch.edges(); ++k) {
+                DrawnCurve edge = drawn_edge(m.patch, k);
+                const std::array<Point, 3> p{edge.position(0), edge.position(0.5), edge.position(1)};
+                const bool known = std::any_of(seen.begin(), seen.end(), [&](const auto& q) {
+                    return same(p[1], q[1]) && ((same(p[0], q[0]) && same(p[2], q[2])) || (same(p[0], q[2]) && same(p[2], q[0])));
+                });
+                if (known) continue;
+                seen.push_back(p);
+                edges.push_back(std::move(edge));
+            }
+        add_curves(o, edges, curve_color(), 1);
+    }
+
+    void add_curves(const SceneObject& o, const std::vector<DrawnCurve>& curves, const Color& color, double opacity) {
+        const double radius = default_radius(o, size_);
+        std::vector<CubicPiece> pieces;
+        std::vector<Point> joints;  // balls close the ends and round the corners
+        for (const DrawnCurve& curve : curves) {
+            const auto some = cubic_pieces(curve, std::min(0.25 * tolerance_, 0.02 * radius));
+            if (some.empty()) {
+                if (o.kind == SceneObject::Kind::curve) joints.push_back(curve.position(curve.begin));
+                continue;
+            }
+            joints.push_back(some.front()[0]);
+            for (std::size_t i = 0; i < some.size(); ++i)
+                if (i + 1 == some.size() || kink(some[i], some[i + 1])) joints.push_back(some[i][3]);
+            pieces.insert(pieces.end(), some.begin(), some.end());
+        }
+        add_tubes(pieces, radius, color, opacity);
+        add_balls(joints, radius, color, opacity);
+    }
+    static bool kink(const CubicPiece& a, const CubicPiece& b) {
+        const Point in = a[3] - a[2], out = b[1] - b[0];
+        return !(dot(in, out) > 0.9999 * length(in) * length(out));
+    }
+
+    void add_net(const SceneObject& o) {
+        const double radius = default_radius(o, size_);
+        std::vector<CubicPiece> rods;
+        for (const auto& [i, j] : o.net.rods) {
+            const Point a = o.net.points.at(i), d = o.net.points.at(j);
+            if (distance(a, d) > 1e-9 * size_) rods.push_back({a, a + (1.0 / 3) * (d - a), a + (2.0 / 3) * (d - a), d});
+        }
+        const Color color = o.color.value_or(net_color());
+        add_tubes(rods, radius, color, o.opacity);
+        add_balls(o.net.points, kNetBall * radius, color, o.opacity);
+    }
+
+    void add_tubes(const std::vector<CubicPiece>& pieces, double radius, const Color& color, double opacity) {
+        if (pieces.empty() || !(radius > 0) || !(opacity > 0)) return;
+        result_.embree->add_tubes(pieces, radius, opacity);
+        add_plain(color, opacity, radius);
+    }
+    void add_balls(const std::vector<Point>& centres, double radius, const Color& color, double opacity) {
+        if (centres.empty() || !(radius > 0) || !(opacity > 0)) return;
+        result_.embree->add_balls(centres, radius, opacity);
+        add_plain(color, opacity, radius);
+    }
+    void add_plain(const Color& color, double opacity, double radius) {
+        Thing thing;
+        thing.front = thing.back = color;
+        thing.opacity = opacity;
+        thing.error = 0.01 * radius;  // Embree's own error is far below
+        result_.things.push_back(thing);
+    }
+
+    void report(double fraction, std::size_t objects) const {
+        if (progress_) progress_((static_cast<double>(done_) + fraction) / static_cast<double>(objects));
+    }
+
+    const Scene& scene_;
+    double tolerance_, size_ = 1;
+    const std::function<void(double)>& progress_;
+    TracedScene result_;
+    std::map<const Surface*, const Mesh*> mesh_of_;
+    std::size_t done_ = 0, surfaces_ = 0;
+};
+
+void sample(const Patch& patch, std::vector<Point>& out) {
+    constexpr int n = 16;
+    const Rect r = patch.rect();
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= (patch.domain() == Domain::quad ? n : n - i); ++j)
+            out.push_back(patch.point(r.u0 + (r.u1 - r.u0) * i / n, r.v0 + (r.v1 - r.v0) * j / n));
+}
+
+void add_around(const Point& p, double radius, std::vector<Point>& out) {
+    for (const Point& d : {Point{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
+        out.push_back(p + radius * d);
+        out.push_back(p - radius * d);
+    }
+}
+
+}  // namespace
+
+std::vector<SceneObject> drawn_objects(const Scene& scene) {
+    if (!scene.objects.empty()) return scene.objects;
+    std::vector<SceneObject> all;
+    for (const Surface& s : scene.surfaces) {
+        SceneObject& o = all.emplace_back();
+        o.kind = SceneObject::Kind::surface;
+        o.name = s.name;
+    }
+    for (const auto& [name, curve] : scene.curves) {
+        SceneObject& o = all.emplace_back();
+        o.kind = SceneObject::Kind::curve;
+        o.name = name;
+    }
+    return all;
+}
+
+std::vector<Point> drawn_points(const Scene& scene) {
+    const double size = bounding_box(scene).diagonal();
+    std::vector<Point> points;
+    for (const SceneObject& o : drawn_objects(scene)) {
+        const double radius = default_radius(o, size);
+        switch (o.kind) {
+            case SceneObject::Kind::surface:
+                for (const Member& m : surface_of(scene, o).patches) sample(m.patch, points);
+                break;
+            case SceneObject::Kind::curve: {
+                const Curve& c = curve_of(scene, o);
+                for (int i = 0; i <= 64; ++i) add_around(c(c.begin() + (c.end() - c.begin()) * i / 64), radius, points);
+                break;
+            }
+            case SceneObject::Kind::net:
+                for (const Point& p : o.net.points) add_around(p, kNetBall * radius, points);
+                break;
+            case SceneObject::Kind::point: add_around(o.point, radius, points);
+        }
+    }
+    std::erase_if(points, [](const Point& p) { return !finite(p); });
+    return points;
+}
+
+TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress) {
+    return Builder(scene, tolerance, progress).run();
+}
+
+}  // namespace isoparm

@@ -1,0 +1,41 @@
+// traced_scene.h -- a scene turned into what rays meet: certified meshes, tubes and balls, each with its looks.
+#pragma once
+#include <deque>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "embree_scene.h"
+#include "scene.h"
+
+namespace isoparm {
+
+/// One geometry of the EmbreeScene. Surfaces have a patch, and a mesh that lies within `error` of it.
+struct Thing {
+    Color front, back;  // colours of the two sides, linear
+    double opacity = 1;
+    double error = 0;   // scene units
+    bool inside_out = false;  // triangles wind about the back
+    Isolines isolines;
+    const Patch* patch = nullptr;
+    const Mesh* mesh = nullptr;
+    const MeshPart* part = nullptr;
+};
+
+struct TracedScene {
+    std::deque<Mesh> meshes;
+    std::vector<Thing> things;  // by the number of the geometry
+    std::unique_ptr<EmbreeScene> embree;
+    std::size_t triangles = 0;
+    double certified_error = 0;  // of all meshes, float32 included
+};
+
+/// What is drawn: the scene's objects, or all its surfaces and curves when it has none.
+std::vector<SceneObject> drawn_objects(const Scene& scene);
+/// Points all over what is drawn, for cameras that fit. Do not depend on a tolerance.
+std::vector<Point> drawn_points(const Scene& scene);
+/// Tessellates every surface that is drawn, once each, within `tolerance` (scene units). Refers to patches of `scene`,
+/// which must live as long. Throws what tessellate() throws, with the surface's name.
+TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress);
+
+}  // namespace isoparm

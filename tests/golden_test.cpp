@@ -1,0 +1,258 @@
+// golden_test.cpp -- every surface built here against values computed with 50 digits by an independent program: position,
+// first and second derivatives and unit normal to 1e-12 relative, and the limits at singular corners.
+#include <gtest/gtest.h>
+#include <json/json.h>
+
+#include <fstream>
+
+#include "curves/arc.h"
+#include "curves/bezier.h"
+#include "curves/isocurve.h"
+#include "patches/bezier_triangle.h"
+#include "patches/coons.h"
+#include "patches/coons_hermite.h"
+#include "patches/network.h"
+#include "patches/side_vertex.h"
+#include "patches/tensor_bezier.h"
+
+namespace isoparm {
+namespace {
+
+constexpr double kTolerance = 1e-12;  // of the magnitude of the data
+const double kHalfRoot = std::sqrt(0.5);
+
+const Json::Value& golden() {
+    static const Json::Value root = [] {
+        std::ifstream file(ISOPARM_SOURCE_DIR "/tests/data/golden.json");
+        Json::Value v;
+        file >> v;
+        return v;
+    }();
+    return root;
+}
+
+double number(const Json::Value& v) {
+    if (!v.isString()) return v.asDouble();
+    const std::string s = v.asString();
+    return s == "sqrt(2)/2" ? kHalfRoot : s == "1/2" ? 0.5 : std::stod(s);
+}
+Point point(const Json::Value& v) { return {number(v[0]), number(v[1]), number(v[2])}; }
+std::vector<Point> points(const Json::Value& v) {
+    std::vector<Point> list;
+    for (const auto& p : v) list.push_back(point(p));
+    return list;
+}
+Grid<Point> grid(const Json::Value& v) {
+    Grid<Point> rows;
+    for (const auto& row : v) rows.push_back(points(row));
+    return rows;
+}
+Grid<double> weights(const Json::Value& v) {
+    Grid<double> rows;
+    for (const auto& row : v) {
+        rows.emplace_back();
+        for (const auto& w : row) rows.back().push_back(number(w));
+    }
+    return rows;
+}
+/// Largest coordinate anywhere in the data.
+double magnitude(const Json::Value& v) {
+    double m = 0;
+    if (v.isObject() || v.isArray())
+        for (const auto& x : v) m = std::max(m, magnitude(x));
+    else if (v.isNumeric()) m = std::abs(v.asDouble());
+    else if (v.isString()) m = std::abs(std::strtod(v.asCString(), nullptr));
+    return m;
+}
+Curve bezier(const Json::Value& v) { return make_bezier(points(v)); }
+Curve quarter_circle(const Point& from, const Point& to) { return make_bezier({from, from + to, to}, {1, kHalfRoot, 1}); }
+
+CoonsCurves coons_curves(const Json::Value& d) { return {bezier(d["c0"]), bezier(d["c1"]), bezier(d["d0"]), bezier(d["d1"])}; }
+HermiteData hermite_data(const Json::Value& d) {
+    const auto& f = d["f=[x(0,v),xu(0,v),xu(1,v),x(1,v)]"];
+    const auto& g = d["g=[x(u,0),xv(u,0),xv(u,1),x(u,1)]"];
+    return {{bezier(f[0]), bezier(f[1]), bezier(f[2]), bezier(f[3])}, {bezier(g[0]), bezier(g[1]), bezier(g[2]), bezier(g[3])}};
+}
+std::array<Curve, 3> triangle_edges(const Json::Value& d) {
+    if (d.isMember("E1")) return {bezier(d["E1"]), bezier(d["E2"]), bezier(d["E3"])};
+    const Point a{1, 0, 0}, b{0, 1, 0}, c{0, 0, 1};  // the octant of the sphere
+    return {quarter_circle(b, c), quarter_circle(c, a), quarter_circle(a, b)};
+}
+Function blend(const std::string& name) {
+    if (name == "t") return Function::polynomial({0, 1});
+    if (name == "t2") return Function::polynomial({0, 0, 1});
+    if (name == "2t3-t4") return Function::polynomial({0, 0, 0, 2, -1});
+    if (name == "smoothstep") return cubic_blend();
+    throw std::runtime_error("no blend " + name);
+}
+/// The network of (6.24): parameter lines of a Bezier patch over [0,3] x [0,2], as isocurves or as Bezier curves.
+Network network(const Json::Value& d, bool isocurves) {
+    const auto p = grid(d["P"]);
+    const Patch patch = make_bezier_patch(p);
+    const auto casteljau = [](std::vector<Point> b, double t) {
+        for (; b.size() > 1; b.pop_back())
+            for (std::size_t i = 0; i + 1 < b.size(); ++i) b[i] = (1 - t) * b[i] + t * b[i + 1];
+        return b[0];
+    };
+    Network net;
+    for (int i = 0; i <= 3; ++i) {
+        std::vector<Point> column;
+        for (std::size_t j = 0; j < p[0].size(); ++j) {
+            std::vector<Point> along_u;
+            for (const auto& row : p) along_u.push_back(row[j]);
+            column.push_back(casteljau(along_u, i / 3.0));
+        }
+        net.a.push_back(isocurves ? make_isocurve(patch, Along::v, i / 3.0) : make_bezier(column));
+    }
+    for (int j = 0; j <= 2; ++j) {
+        std::vector<Point> row;
+        for (const auto& along_v : p) row.push_back(casteljau(along_v, j / 2.0));
+        net.b.push_back(isocurves ? make_isocurve(patch, Along::u, j / 2.0) : make_bezier(row));
+    }
+    return net;
+}
+
+Patch build(const std::string& name, const Json::Value& d) {
+    if (name == "coons_bilinear") return make_coons(coons_curves(d));
+    if (name == "coons_partially_bicubic") return make_coons(coons_curves(d), cubic_blend());
+    if (name == "coons_bicubic_hermite") return make_coons_hermite(hermite_data(d));
+    if (name == "bezier_tp_54") return make_bezier_patch(grid(d["P[i][j] (i:u,j:v)"]));
+    if (name == "gregory_square") return make_coons_hermite(hermite_data(d), Twist::gregory);
+    if (name == "network_624_625_cell_10") return make_network(network(d, false));
+    if (name == "sphere_octant") return make_bezier_patch(grid(d["P"]), weights(d["W"]));
+    if (name == "bezier_triangle_deg2") {
+        const auto e1 = points(d["E1"]), e2 = points(d["E2"]), e3 = points(d["E3"]);
+        return make_bezier_triangle(2, {e3[0], e3[1], e3[2], e2[1], e1[1], e1[2]});
+    }
+    if (name == "tri_side_vertex_quad_H_t2") return make_side_vertex(triangle_edges(d), blend("t2"));
+    if (name.rfind("tri_side_vertex_", 0) == 0) {
+        const auto form = name.find("_delta_") != std::string::npos ? SideVertexForm::delta : SideVertexForm::seed;
+        return make_side_vertex(triangle_edges(d), blend(d["H"].asString()), form);
+    }
+    throw std::runtime_error("no builder for " + name);
+}
+
+void expect_vector(const char* what, const std::optional<Point>& found, const Json::Value& expected, double size) {
+    if (expected.isNull()) {
+        EXPECT_FALSE(found) << what << " should not exist";
+        return;
+    }
+    ASSERT_TRUE(found) << what << " is missing";
+    const Point e = point(expected);
+    EXPECT_LE(distance(*found, e), kTolerance * std::max(size, length(e))) << what;
+}
+void expect_point(const Patch& patch, double u, double v, const Json::Value& e, double size) {
+    SCOPED_TRACE("at (" + std::to_string(u) + ", " + std::to_string(v) + ")");
+    const SurfacePoint s = evaluate(patch, u, v);
+    const std::pair<const char*, std::optional<Point>> found[] = {{"S", s.position}, {"Su", s.du},   {"Sv", s.dv},
+                                                                  {"Suu", s.duu},    {"Suv", s.duv}, {"Svv", s.dvv}};
+    for (const auto& [what, value] : found)
+        if (e.isMember(what)) expect_vector(what, value, e[what], size);
+    if (e.isMember("n") && !e["n"].isNull()) expect_vector("n", s.normal, e["n"], 1);
+}
+
+class Golden : public ::testing::TestWithParam<std::string> {};
+
+/// Points of one cell of a composite surface are given in the cell's own parameters. Second derivatives may jump between
+/// cells and a patch answers for the cell to the right: the upper end of a cell is approached from within.
+double in_cell(const Json::Value& data, int axis, const Json::Value& at) {
+    if (!data.isMember("cell")) return number(at);
+    const double t = data["cell"][axis].asDouble() + number(at);
+    return number(at) == 1 ? std::nextafter(t, 0.0) : t;
+}
+void expect_points(const Patch& patch, const Json::Value& e) {
+    for (const auto& p : e["points"])
+        expect_point(patch, in_cell(e["data"], 0, p["u"]), in_cell(e["data"], 1, p["v"]), p, magnitude(e["data"]));
+}
+
+TEST_P(Golden, AgreesTo1e12) {
+    const auto& e = golden()["surfaces"][GetParam()];
+    expect_points(build(GetParam(), e["data"]), e);
+}
+
+TEST_P(Golden, VertexLimitsExist) {
+    const auto& e = golden()["surfaces"][GetParam()];
+    const Patch patch = build(GetParam(), e["data"]);
+    for (const auto& limit : e["vertex_limits"]) {
+        const std::string at = limit["vertex"].asString();
+        expect_point(patch, at == "A", at == "B", limit, magnitude(e["data"]));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Surface, Golden, ::testing::ValuesIn(golden()["surfaces"].getMemberNames()), [](const auto& info) {
+    std::string name = info.param;
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+});
+
+TEST(GoldenLimits, NetworkThroughIsocurvesIsTheSame) {
+    const auto& e = golden()["surfaces"]["network_624_625_cell_10"];
+    expect_points(make_network(network(e["data"], true)), e);
+}
+
+TEST(GoldenLimits, CoonsIsTheBezierPatchOfItsDiscreteNet) {
+    const auto& e = golden()["surfaces"]["coons_bilinear"];
+    expect_points(make_bezier_patch(grid(e["discrete_coons_net"])), e);
+}
+
+TEST(GoldenLimits, GregoryCornerHasATangentPlaneAndNoSecondDerivatives) {
+    const auto& e = golden()["surfaces"]["gregory_square"];
+    const auto& limit = e["corner_limit"];
+    const double size = magnitude(e["data"]);
+    const Patch patch = build("gregory_square", e["data"]);
+    const SurfacePoint s = evaluate(patch, 0, 0);
+    expect_vector("S", s.position, limit["S"], size);
+    expect_vector("Su", s.du, limit["Su"], size);
+    expect_vector("Sv", s.dv, limit["Sv"], size);
+    EXPECT_FALSE(s.duu || s.duv || s.dvv || s.gaussian || s.mean);
+    ASSERT_TRUE(s.normal);
+    EXPECT_LE(distance(*s.normal, normalized(cross(*s.du, *s.dv))), 1e-15);
+    for (const auto& d : limit["second derivative limits"]) {
+        const double h = 1e-13;  // the limit is reached like O(h)
+        const SurfacePoint near = evaluate(patch, h * number(d["direction"][0]), h * number(d["direction"][1]));
+        EXPECT_LE(distance(near.duu.value(), point(d["Suu"])), 1e-9);
+        EXPECT_LE(distance(near.duv.value(), point(d["Suv"])), 1e-9);
+        EXPECT_LE(distance(near.dvv.value(), point(d["Svv"])), 1e-9);
+    }
+}
+
+TEST(GoldenLimits, ConePointOfSideVertexHasDirectionalDerivativesOnly) {
+    const auto& e = golden()["surfaces"]["tri_side_vertex_eq3_H_t"];
+    const Patch patch = build("tri_side_vertex_eq3_H_t", e["data"]);
+    const SurfacePoint vertex = evaluate(patch, 0, 1);
+    EXPECT_LE(distance(vertex.position, point(e["data"]["B"])), 1e-15);
+    EXPECT_FALSE(vertex.du || vertex.dv || vertex.normal);
+    for (const auto& limit : e["vertex_directional_limits"]) {
+        ASSERT_EQ(limit["vertex"].asString(), "B");
+        const Point d = point(limit["direction(du,dv,dw)"]);
+        const double h = 0x1p-40;
+        const SurfacePoint near = evaluate(patch, h * d.x, 1 + h * d.y);
+        EXPECT_LE(distance(d.x * near.du.value() + d.y * near.dv.value(), point(limit["dS"])), 1e-9);
+    }
+}
+
+TEST(GoldenLimits, PoleOfTheSphereHasItsNormal) {
+    const auto& e = golden()["surfaces"]["sphere_octant"];
+    const Patch patch = build("sphere_octant", e["data"]);
+    for (double v : {0.0, 0.4, 1.0}) {
+        const SurfacePoint s = evaluate(patch, 0, v);
+        ASSERT_TRUE(s.normal);
+        EXPECT_LE(distance(*s.normal, {0, 0, 1}), 1e-15);
+        EXPECT_LE(length(s.dv.value()), 1e-15);
+    }
+}
+
+TEST(GoldenCurves, QuarterCircle) {
+    const auto& e = golden()["curves"]["quarter_circle"];
+    std::vector<double> w;
+    for (const auto& x : e["w"]) w.push_back(number(x));
+    for (const Curve& c : {make_bezier(points(e["P"]), w), make_arc({0, 0, 0}, {1, 0, 0}, {0, 1, 0})})
+        for (const auto& p : e["points"]) {
+            const double t = number(p["t"]);
+            EXPECT_LE(distance(c(t), point(p["x"])), kTolerance);
+            EXPECT_LE(distance(c.derivative(t), point(p["dx"])), kTolerance);
+        }
+}
+
+}  // namespace
+}  // namespace isoparm
