@@ -48,7 +48,8 @@ double simplex_maximum(double a, double b, double c) {
     if (!(std::min({a, b, c}) > 0) || !std::isfinite(largest)) return std::isfinite(largest) ? edge : kInfinity;
     const double slack = -1e-12 * largest;
     if (a + c - b < slack || a + b - c < slack || b + c - a < slack) return edge;
-    const Interval A(a), B(b), C(c);
+    // The form grows with its coefficients: lifting tiny ones keeps D away from cancellation and costs 1e-7 at most.
+    const Interval A(std::max(a, 1e-7 * largest)), B(std::max(b, 1e-7 * largest)), C(std::max(c, 1e-7 * largest));
     const Interval D = Interval(2) * (A * B + B * C + C * A) - (A * A + B * B + C * C);
     const double third = up(largest / 3);
     if (!(D.lo > 0)) return third;
@@ -75,7 +76,7 @@ TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, c
     const double aspect = ru > 0 && rv > 0 ? rv / ru : 1;
 
     std::array<double, 3> second{}, first{}, zeroth{};
-    std::array<double, 3> score{};
+    std::array<double, 3> curved{}, steep{};  // what each edge contributes to the two kinds of bound
     for (int f = 0; f < 3; ++f) {
         const auto centre = [&](int i, int j) {
             const int k = JetUV<Interval, 2>::index(i, j);
@@ -100,30 +101,33 @@ TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, c
             const double m = mid(b), q = up(rad(b) + up(up(quu * g.uu) + up(qvv * g.vv)));
             plus[k] = up(m + q);
             minus[k] = up(q - m);
-            score[k] += m * m;
+            curved[k] += (std::fabs(m) + q) * (std::fabs(m) + q);
         }
         const double largest = std::max(simplex_maximum(plus[0], plus[1], plus[2]), simplex_maximum(minus[0], minus[1], minus[2]));
         second[f] = up(largest / 2);
         const Interval gu = over(1, 0), gv = over(0, 1), x = over(0, 0);
         first[f] = up(up(rad(gu) * ru) + up(rad(gv) * rv));
         zeroth[f] = up(x.hi - x.lo);
+        for (int k = 0; k < 3; ++k) {
+            const double d = rad(gu) * mag(edges[k].du) + rad(gv) * mag(edges[k].dv);
+            steep[k] += d * d;
+        }
     }
     const auto proved = [](const std::array<double, 3>& c) {
         const double b = length_bound(c);
         return std::isnan(b) ? kInfinity : b;
     };
+    const auto useful = [](const std::array<double, 3>& c) { return std::isfinite(c[0] + c[1] + c[2]) && c[0] + c[1] + c[2] > 0; };
     TriangleBound result;
     const double smooth = proved(second), rough = std::min(proved(first), proved(zeroth));
     result.parametric = std::min(smooth, rough);
-    if (!(smooth <= 4 * rough) || !std::isfinite(score[0] + score[1] + score[2]) || score[0] + score[1] + score[2] == 0)
-        for (int k = 0; k < 3; ++k) {
-            const double d = distance(points[k], points[(k + 1) % 3]);
-            score[k] = d * d;
-        }
+    std::array<double, 3> score = smooth <= rough ? curved : steep;
+    if (!useful(score))
+        for (int k = 0; k < 3; ++k) score[k] = dot(points[(k + 1) % 3] - points[k], points[(k + 1) % 3] - points[k]);
     // Where two edges are all but equal, the longer one in the domain: the choice must not hang on rounding.
-    for (int k = 0; k < 3; ++k) {
+    const auto size = [&](int k) { return edges[k].uu + edges[k].vv; };
+    for (int k = 1; k < 3; ++k) {
         const double best = score[result.worst_edge];
-        const auto size = [&](int i) { return edges[i].uu + edges[i].vv; };
         if (score[k] > best * (1 + 1e-9) || (score[k] >= best * (1 - 1e-9) && size(k) > size(result.worst_edge) * (1 + 1e-9))) result.worst_edge = k;
     }
     return result;

@@ -1,5 +1,7 @@
 #include "curve.h"
 
+#include <algorithm>
+
 #include "curves/modify.h"
 #include "piecewise_bezier.h"
 
@@ -28,6 +30,20 @@ struct Reparametrized {
 
 Vec3<Polynomial> Curve::Concept::exact(const Polynomial&) const {
     return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
+}
+
+std::vector<Break> breaks_of(std::span<const Curve> curves) {
+    std::vector<Break> list, merged;
+    for (const Curve& c : curves)
+        for (const Break& b : c.breaks()) list.push_back(b);
+    std::sort(list.begin(), list.end(), [](const Break& x, const Break& y) { return x.t < y.t; });
+    const double tolerance = curves.empty() ? 0 : break_rounding * (curves[0].end() - curves[0].begin());
+    for (const Break& b : list) {
+        if (b.t - curves[0].begin() <= tolerance || curves[0].end() - b.t <= tolerance) continue;
+        if (merged.empty() || b.t - merged.back().t > tolerance) merged.push_back(b);
+        else merged.back().continuity = std::min(merged.back().continuity, b.continuity);
+    }
+    return merged;
 }
 
 Curve reparametrized(const Curve& c, double begin, double end) {

@@ -4,6 +4,7 @@
 // from every thread. Its domain is [begin(), end()]; it is C1 there unless breaks() says otherwise.
 #pragma once
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "function.h"
@@ -91,6 +92,11 @@ private:
     F f_;
 };
 template <class F> Curve make_curve(F f) { return Curve(std::make_shared<CurveModel<F>>(std::move(f))); }
+
+/// Breaks closer than this, as a fraction of the domain, are one break that was rounded in different ways.
+inline constexpr double break_rounding = 1e-13;
+/// The breaks of curves over the same domain, in order, each with the least continuity that any of them has there.
+std::vector<Break> breaks_of(std::span<const Curve> curves);
 
 /// The same curve run over [begin, end] (affinely).
 Curve reparametrized(const Curve& c, double begin, double end);

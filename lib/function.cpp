@@ -15,6 +15,9 @@ struct PolynomialFunction {
 
 }  // namespace
 
-Function Function::polynomial(std::vector<double> coefficients) { return make_function(PolynomialFunction{std::move(coefficients)}); }
+Function Function::polynomial(std::vector<double> coefficients) {
+    if (coefficients.empty()) coefficients = {0};
+    return make_function(PolynomialFunction{std::move(coefficients)});
+}
 
 }  // namespace isoparm

@@ -12,7 +12,7 @@ namespace isoparm {
 
 inline double representative(double x) { return x; }
 inline double representative(const Pack& x) { return x[0]; }
-inline double representative(const Interval& x) { return mid(x); }
+inline double representative(const Interval& x) { return x.lo; }  // the middle of a tiny one may be its upper end
 template <class T, int I, int J, int N> double representative(const Jet<T, I, J, N>& x) { return representative(x.c[0]); }
 inline double representative(const Polynomial& x) { return mid(x.range()); }
 
@@ -57,7 +57,7 @@ public:
         const std::size_t i0 = cell(breaks_u_, box.u.lo), i1 = last_cell(edges_u_, i0, box.u.hi);
         const std::size_t j0 = cell(breaks_v_, box.v.lo), j1 = last_cell(edges_v_, j0, box.v.hi);
         if (i0 == i1 && j0 == j1) return in_cell(box, i0, j0);
-        // Across breaks: the hull of the cells; second derivatives may jump there, third ones have no bound.
+        // Across breaks: the hull of the cells; slopes may jump there, so derivatives of second order have no bound.
         Enclosure all;
         for (std::size_t i = i0; i <= i1; ++i)
             for (std::size_t j = j0; j <= j1; ++j) {
@@ -105,11 +105,17 @@ private:
         return true;
     }
 
-    static double third(double u, double v) { return std::max(0.0, 1 - u - v); }
+    /// w = 1 - u - v. The larger of u and v goes first: 1 minus a number from 1/2 to 1 is exact, so w keeps all its digits
+    /// near the vertices.
+    static double third(double u, double v) { return std::max(0.0, v > u ? (1 - v) - u : (1 - u) - v); }
     static Pack third(const Pack& u, const Pack& v) {
-        return each_lane(Pack(1) - u - v, [](double x) { return std::max(0.0, x); });
+        Pack w;
+        for (int i = 0; i < Pack::lanes; ++i) w.set(i, third(u[i], v[i]));
+        return w;
     }
-    static Interval third(const Interval& u, const Interval& v) { return clip(Interval(1) - u - v, {0, 1}); }
+    static Interval third(const Interval& u, const Interval& v) {
+        return clip(v.lo > u.lo ? (Interval(1) - v) - u : (Interval(1) - u) - v, {0, 1});
+    }
 
     /// The formula on jets of order N.
     template <int N, class T> Vec3<JetUV<T, N>> run(const T& u, const T& v) const {

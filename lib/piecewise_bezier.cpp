@@ -70,7 +70,7 @@ template <> void piece_taylor(const BezierPiece& piece, const Interval& t, int o
     const Interval s = (t - Interval(piece.begin)) / h;
     Interval c[3][max_degree + 1], w[max_degree + 1];
     const bool rational = !piece.weights.empty();
-    double low[max_degree + 1], high[max_degree + 1];
+    double low[max_degree + 1]{}, high[max_degree + 1]{};
     for (int axis = 0; axis < 3; ++axis) {
         bool exact = true;
         for (int i = 0; i <= n; ++i) {

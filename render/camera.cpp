@@ -9,7 +9,7 @@
 namespace isoparm {
 namespace {
 
-constexpr double kMargin = 0.06;                         // of the picture, on each side of what is fitted
+constexpr double kMargin = 0.06;                           // of the picture, on each side of what is fitted
 const Point kThreeQuarter = normalized({1.2, -2.1, 1.2});  // from the middle of the scene to the eye
 
 Bounds box_of(const std::vector<Point>& points) {
@@ -31,7 +31,7 @@ void look(Camera& c, const Point& toward, const Point& up) {
     c.up = cross(c.right, c.forward);
 }
 
-/// Range of a + slope * depth over the points, `a` being their coordinate along an axis of the camera.
+/// Range of a coordinate over the points.
 struct Span {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     void add(double x) {
@@ -42,41 +42,28 @@ struct Span {
     double extent() const { return high - low; }
 };
 
-/// Zooms so that everything is inside. When `centred`, also moves sideways so that it is in the middle.
-void fit_orthographic(Camera& c, const std::vector<Point>& drawn, bool centred, double aspect) {
-    Span x, y, z;
+/// Zooms so that everything is inside, and moves sideways so that it is in the middle.
+void fit_orthographic(Camera& c, const std::vector<Point>& drawn, double aspect) {
+    Span x, y;
     for (const Point& p : drawn) {
         x.add(dot(p - c.eye, c.right));
         y.add(dot(p - c.eye, c.up));
-        z.add(c.depth(p));
     }
-    if (centred) {
-        c.eye += x.middle() * c.right + y.middle() * c.up;
-        x = {-0.5 * x.extent(), 0.5 * x.extent()};
-        y = {-0.5 * y.extent(), 0.5 * y.extent()};
-    }
-    const double half_x = std::max(-x.low, x.high), half_y = std::max(-y.low, y.high);
-    c.half_height = std::max(half_y, half_x / aspect) / (1 - 2 * kMargin);
-    if (!(c.half_height > 0)) c.half_height = 1;
-    c.eye += (z.low - std::max(z.extent(), c.half_height)) * c.forward;  // in front of everything
+    c.eye += x.middle() * c.right + y.middle() * c.up;
+    c.half_height = 0.5 * std::max(y.extent(), x.extent() / aspect) / (1 - 2 * kMargin);
 }
 
-/// Moves the eye back, or forward, until everything is just inside the four planes of the view. A point at (x,y,z) from
-/// the eye is inside when |x| <= a z and |y| <= b z: bounds on the eye that are linear in where it is.
-void fit_perspective(Camera& c, const std::vector<Point>& drawn, bool centred, double aspect) {
+/// Moves the eye to the nearest place from which everything is just inside the four planes of the view. A point at
+/// (x,y,z) from the eye is inside when |x| <= a z and |y| <= b z: bounds that are linear in where the eye is.
+void fit_perspective(Camera& c, const std::vector<Point>& drawn, double aspect) {
     const double b = c.half_height * (1 - 2 * kMargin), a = b * aspect;
-    Span left, right, low, high, sides;
+    Span left, right, low, high;
     for (const Point& p : drawn) {
         const double x = dot(p - c.eye, c.right), y = dot(p - c.eye, c.up), z = c.depth(p);
         left.add(x - a * z);
         right.add(x + a * z);
         low.add(y - b * z);
         high.add(y + b * z);
-        sides.add(z - std::max(std::fabs(x) / a, std::fabs(y) / b));
-    }
-    if (!centred) {
-        c.eye += sides.low * c.forward;
-        return;
     }
     const double z = std::min((right.low - left.high) / (2 * a), (high.low - low.high) / (2 * b));
     c.eye += 0.5 * (right.low + left.high) * c.right + 0.5 * (high.low + low.high) * c.up + z * c.forward;
@@ -113,19 +100,26 @@ Camera make_camera(const CameraSettings& settings, const std::vector<Point>& dra
 
     if (c.orthographic) {
         c.half_height = 0.5 * *settings.orthographic;
-        if (!(c.half_height >= 0)) throw_input("the camera's orthographic height is " + to_text(2 * c.half_height) + ", expected 0 (fitted) or more");
+        if (!(c.half_height >= 0))
+            throw_input("the camera's orthographic height is " + to_text(2 * c.half_height) +
+                        ", expected 0 (fitted) or more");
     } else {
         if (!(settings.fov > 0 && settings.fov < 180))
-            throw_input("the camera's field of view is " + to_text(settings.fov) + " degrees, expected more than 0 and less than 180");
+            throw_input("the camera's field of view is " + to_text(settings.fov) +
+                        " degrees, expected more than 0 and less than 180");
         c.half_height = std::tan(settings.fov * std::numbers::pi / 360);
     }
-    const bool zoom = c.orthographic && c.half_height == 0;
-    if ((settings.fit || !settings.eye || zoom) && !drawn.empty()) {
+    if (!drawn.empty()) {
         const double aspect = static_cast<double>(width) / height;
-        const double asked = c.half_height;
-        if (c.orthographic) fit_orthographic(c, drawn, !settings.target, aspect);
-        else fit_perspective(c, drawn, !settings.target, aspect);
-        if (c.orthographic && !zoom && !settings.fit) c.half_height = asked;
+        const bool fit = settings.fit || !settings.eye;
+        if (c.orthographic && (fit || c.half_height == 0)) {
+            const double asked = c.half_height;
+            fit_orthographic(c, drawn, aspect);
+            if (asked > 0 && !settings.fit) c.half_height = asked;
+        } else if (fit) {
+            fit_perspective(c, drawn, aspect);
+            if (box.diagonal() == 0) c.eye += -2 * size * c.forward;  // a single point: from some distance
+        }
     }
     if (!(c.half_height > 0)) c.half_height = 1;
     // All points of an orthographic view count, also those behind where the eye happens to be.
@@ -140,8 +134,9 @@ Camera make_camera(const CameraSettings& settings, const std::vector<Point>& dra
 double finest_pixel(const Camera& camera, const Bounds& box) {
     double nearest = std::numeric_limits<double>::infinity();
     for (int corner = 0; corner < 8; ++corner)
-        nearest = std::min(nearest, camera.depth({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                                                  corner & 4 ? box.high.z : box.low.z}));
+        nearest =
+            std::min(nearest, camera.depth({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                                            corner & 4 ? box.high.z : box.low.z}));
     return camera.pixel_size(std::max(nearest, 1e-3 * box.diagonal()));  // the eye may be inside the box
 }
 

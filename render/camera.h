@@ -27,9 +27,10 @@ struct Camera {
     double pixel_size(double depth) const { return 2 * half_height / height * (orthographic ? 1 : depth); }
 };
 
-/// The camera that the settings describe. What they leave open is chosen for `drawn`, points of everything that is drawn
-/// (its convex hull, or about): a three-quarter view from the front, right and above with z up, everything inside with a
-/// margin of 6% of the picture. Throws Error(input) when eye and target coincide or a field of view is no such angle.
+/// The camera that the settings describe. What they leave open is chosen for `drawn`, points of everything that is
+/// drawn (its convex hull, or about): a three-quarter view from the front, right and above with z up, everything inside
+/// with a margin of 6% of the picture. Throws Error(input) when eye and target coincide or a field of view is no such
+/// angle.
 Camera make_camera(const CameraSettings& settings, const std::vector<Point>& drawn, int width, int height);
 
 /// Size of a pixel where `box` is nearest to the camera, in scene units.

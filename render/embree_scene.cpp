@@ -130,14 +130,16 @@ struct EmbreeScene::State {
     }
     void check(const char* doing) const {
         if (const RTCError e = rtcGetDeviceError(device); e != RTC_ERROR_NONE)
-            throw std::runtime_error(std::string("Embree failed while ") + doing +
-                                     (e == RTC_ERROR_OUT_OF_MEMORY ? ": out of memory" : ": error " + std::to_string(e)));
+            throw std::runtime_error(
+                std::string("Embree failed while ") + doing +
+                (e == RTC_ERROR_OUT_OF_MEMORY ? ": out of memory" : ": error " + std::to_string(e)));
     }
     /// A vertex relative to the centre, in float32.
     void store(const Point& p, double extent, float* out) {
         const Point q = p - centre;
         for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(q[i]);
-        rounding = std::max(rounding, length(q - Point(out[0], out[1], out[2])));
+        rounding = std::max(
+            rounding, (1 + 1e-9) * length(q - Point(out[0], out[1], out[2])) + 1e-16 * (length(p) + length(centre)));
         radius = std::max(radius, length(q) + extent);
     }
     std::uint32_t attach(RTCGeometry g, double opacity, bool solid) {
@@ -165,7 +167,8 @@ struct EmbreeScene::State {
     void fill(const Ray& ray, double start, RTCRay& r) const {
         const Point o = ray.origin - centre + start * ray.direction;
         r.org_x = static_cast<float>(o.x), r.org_y = static_cast<float>(o.y), r.org_z = static_cast<float>(o.z);
-        r.dir_x = static_cast<float>(ray.direction.x), r.dir_y = static_cast<float>(ray.direction.y), r.dir_z = static_cast<float>(ray.direction.z);
+        r.dir_x = static_cast<float>(ray.direction.x), r.dir_y = static_cast<float>(ray.direction.y),
+        r.dir_z = static_cast<float>(ray.direction.z);
         r.tnear = 0, r.tfar = std::numeric_limits<float>::infinity(), r.time = 0;
         r.mask = ~0u, r.id = 0, r.flags = 0;
     }
@@ -181,7 +184,8 @@ struct EmbreeScene::State {
     bool same_place(const Hit& a, const Hit& b) const {
         const auto near_edge = [](const Hit& h) { return std::min({h.u, h.v, 1 - h.u - h.v}) < 1e-5; };
         const Geometry &ga = geometries[a.geometry], &gb = geometries[b.geometry];
-        return !ga.solid && !gb.solid && ga.mesh == gb.mesh && b.distance - a.distance < 1e-6 * radius && near_edge(a) && near_edge(b);
+        return !ga.solid && !gb.solid && ga.mesh == gb.mesh && b.distance - a.distance < 1e-6 * radius &&
+               near_edge(a) && near_edge(b);
     }
     double transmittance(const Ray& ray) const {
         ShadowQuery query;
@@ -195,9 +199,11 @@ struct EmbreeScene::State {
 EmbreeScene::EmbreeScene(const Point& centre) : state_(std::make_unique<State>()) {
     State& s = *state_;
     s.centre = centre;
-    const char* config = std::getenv("ISOPARM_EMBREE");  // e.g. "isa=sse4.2", for pictures that are equal on all machines
+    const char* config =
+        std::getenv("ISOPARM_EMBREE");  // e.g. "isa=sse4.2", for pictures that are equal on all machines
     s.device = rtcNewDevice(config ? config : "");
-    if (!s.device) throw std::runtime_error("Embree cannot start (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+    if (!s.device)
+        throw std::runtime_error("Embree cannot start (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
     s.scene = rtcNewScene(s.device);
     rtcSetSceneFlags(s.scene, RTC_SCENE_FLAG_ROBUST);
     s.check("starting");
@@ -206,15 +212,16 @@ EmbreeScene::~EmbreeScene() = default;
 
 std::uint32_t EmbreeScene::add_mesh(const Mesh& mesh, double opacity) {
     State& s = *state_;
-    std::vector<float>& vertices = s.shared.emplace_back(3 * mesh.positions.size() + 4);  // Embree may read 16 bytes at once
+    std::vector<float>& vertices =
+        s.shared.emplace_back(3 * mesh.positions.size() + 4);  // Embree may read 16 bytes at once
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) s.store(mesh.positions[i], 0, &vertices[3 * i]);
     std::uint32_t first = Hit::none;
     for (const MeshPart& part : mesh.parts) {
         RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0, 3 * sizeof(float),
-                                   mesh.positions.size());
-        auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                          3 * sizeof(std::uint32_t), part.triangles.size()));
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0,
+                                   3 * sizeof(float), mesh.positions.size());
+        auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+            g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), part.triangles.size()));
         if (!index && !part.triangles.empty()) s.check("taking over a mesh");
         for (const auto& triangle : part.triangles)
             for (const std::uint32_t corner : triangle) *index++ = part.vertex[corner];
@@ -227,8 +234,10 @@ std::uint32_t EmbreeScene::add_mesh(const Mesh& mesh, double opacity) {
 std::uint32_t EmbreeScene::add_tubes(const std::vector<std::array<Point, 4>>& pieces, double radius, double opacity) {
     State& s = *state_;
     RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE);
-    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 4 * pieces.size()));
-    auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(std::uint32_t), pieces.size()));
+    auto* vertex = static_cast<float*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 4 * pieces.size()));
+    auto* index = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(std::uint32_t), pieces.size()));
     if (!vertex || !index) s.check("taking over a curve");
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         index[i] = static_cast<std::uint32_t>(4 * i);
@@ -244,7 +253,8 @@ std::uint32_t EmbreeScene::add_tubes(const std::vector<std::array<Point, 4>>& pi
 std::uint32_t EmbreeScene::add_balls(const std::vector<Point>& centres, double radius, double opacity) {
     State& s = *state_;
     RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), centres.size()));
+    auto* vertex = static_cast<float*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), centres.size()));
     if (!vertex) s.check("taking over points");
     for (const Point& p : centres) {
         s.store(p, radius, vertex);
@@ -320,10 +330,13 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
     std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
         return std::tie(a.distance, a.geometry, a.primitive) < std::tie(b.distance, b.geometry, b.primitive);
     });
-    hits.erase(std::unique(hits.begin(), hits.end(), [&](const Hit& a, const Hit& b) { return s.same_place(a, b); }), hits.end());
+    hits.erase(std::unique(hits.begin(), hits.end(), [&](const Hit& a, const Hit& b) { return s.same_place(a, b); }),
+               hits.end());
     for (std::size_t i = 0; i < hits.size(); ++i)
         if (s.geometries[hits[i].geometry].solid)
-            hits.erase(std::remove_if(hits.begin() + i + 1, hits.end(), [&](const Hit& h) { return h.geometry == hits[i].geometry; }), hits.end());
+            hits.erase(std::remove_if(hits.begin() + i + 1, hits.end(),
+                                      [&](const Hit& h) { return h.geometry == hits[i].geometry; }),
+                       hits.end());
     for (Hit& h : hits) h.distance += start;
 }
 

@@ -51,7 +51,8 @@ public:
 
     /// The nearest hit of each of n <= packet rays, whatever its opacity.
     void intersect(const Ray* rays, int n, Hit* hits) const;
-    /// Every hit from the nearest to the first opaque one, in order. A tube or ball that lets light through counts once.
+    /// Every hit from the nearest to the first opaque one, in order. A tube or ball that lets light through counts
+    /// once.
     void layers(const Ray& ray, std::vector<Hit>& hits) const;
     /// The part of light that passes along each of n <= packet rays; 1 where `active` has no bit.
     void transmittance(const Ray* rays, int n, std::uint32_t active, double* result) const;

@@ -44,7 +44,8 @@ const Format& format_of(const std::string& path) {
         if (lower == f.extension) return f;
     std::string known;
     for (const Format& f : kFormats) known += std::string(known.empty() ? "" : ", ") + f.extension;
-    throw Error(ErrorKind::usage, path + ": found " + (extension.empty() ? "no extension" : "the extension \"" + extension + "\"") +
+    throw Error(ErrorKind::usage, path + ": found " +
+                                      (extension.empty() ? "no extension" : "the extension \"" + extension + "\"") +
                                       ", expected the extension of an image format: " + known);
 }
 
@@ -58,7 +59,8 @@ fs::path program_folder() {
     std::error_code failed;
     fs::path program = fs::read_symlink("/proc/self/exe", failed);
     Dl_info info{};
-    if (failed && dladdr(reinterpret_cast<void*>(&program_folder), &info) && info.dli_fname) program = fs::absolute(info.dli_fname, failed);
+    if (failed && dladdr(reinterpret_cast<void*>(&program_folder), &info) && info.dli_fname)
+        program = fs::absolute(info.dli_fname, failed);
     return program.parent_path();
 }
 
@@ -71,14 +73,18 @@ Module load_module() {
             std::error_code ignored;
             if (!fs::exists(file, ignored)) continue;
             void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-            if (!library) throw Error(ErrorKind::io, file.string() + ": the image module cannot be loaded: " + dlerror());
+            if (!library)
+                throw Error(ErrorKind::io, file.string() + ": the image module cannot be loaded: " + dlerror());
             const Module m{reinterpret_cast<decltype(&isoparm_image_write)>(dlsym(library, "isoparm_image_write")),
                            reinterpret_cast<decltype(&isoparm_image_read)>(dlsym(library, "isoparm_image_read"))};
-            if (!m.write || !m.read) throw Error(ErrorKind::io, file.string() + ": found another program's library, expected the image module");
+            if (!m.write || !m.read)
+                throw Error(ErrorKind::io,
+                            file.string() + ": found another program's library, expected the image module");
             return m;
         }
-    throw Error(ErrorKind::io, "the image module isoparm_image.so was found neither in " + beside.string() + " nor in " +
-                                   (beside.parent_path() / "lib" / "isoparm").string() + "; build or install isoparm again");
+    throw Error(ErrorKind::io, "the image module isoparm_image.so was found neither in " + beside.string() +
+                                   " nor in " + (beside.parent_path() / "lib" / "isoparm").string() +
+                                   "; build or install isoparm again");
 }
 
 const Module& module() {
@@ -117,26 +123,32 @@ std::vector<std::uint8_t> bytes_of(const Image& image, bool with_alpha) {
 std::vector<float> without_alpha(const Image& image) {
     std::vector<float> rgb;
     rgb.reserve(image.pixels.size() / 4 * 3);
-    for (std::size_t i = 0; i < image.pixels.size(); i += 4) rgb.insert(rgb.end(), &image.pixels[i], &image.pixels[i] + 3);
+    for (std::size_t i = 0; i < image.pixels.size(); i += 4)
+        rgb.insert(rgb.end(), &image.pixels[i], &image.pixels[i] + 3);
     return rgb;
 }
 
-void write_file(const std::string& path, const std::string& file, const Format& format, const Image& image, const Metadata& metadata) {
+void write_file(const std::string& path, const std::string& file, const Format& format, const Image& image,
+                const Metadata& metadata) {
     const bool with_alpha = format.alpha && !opaque(image);
     IsoparmImagePixels pixels{image.width, image.height, with_alpha ? 4 : 3, format.linear, nullptr};
     std::vector<std::uint8_t> bytes;
     std::vector<float> rgb;
-    if (!format.linear) pixels.data = (bytes = bytes_of(image, with_alpha)).data();
-    else pixels.data = with_alpha ? image.pixels.data() : (rgb = without_alpha(image)).data();
+    if (!format.linear)
+        pixels.data = (bytes = bytes_of(image, with_alpha)).data();
+    else
+        pixels.data = with_alpha ? image.pixels.data() : (rgb = without_alpha(image)).data();
     std::vector<const char*> names, values;
     for (const auto& [name, value] : metadata) {
         names.push_back(name.c_str());
         values.push_back(value.c_str());
     }
     IsoparmImageError error{};
-    if (module().write(file.c_str(), &pixels, format.lossy, names.data(), values.data(), static_cast<int>(names.size()), &error) != 0) {
+    if (module().write(file.c_str(), &pixels, format.lossy, names.data(), values.data(), static_cast<int>(names.size()),
+                       &error) != 0) {
         std::string told = error.text;  // about the temporary, which is not the user's business
-        if (const auto at = told.find(file); at != std::string::npos) told.replace(at, file.size(), fs::path(path).filename().string());
+        if (const auto at = told.find(file); at != std::string::npos)
+            told.replace(at, file.size(), fs::path(path).filename().string());
         throw Error(ErrorKind::io, path + ": writing the image failed: " + told);
     }
 }
@@ -165,7 +177,8 @@ void check_image_path(const std::string& path) {
     format_of(path);
     std::error_code ignored;
     const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-    if (!fs::is_directory(folder, ignored)) throw Error(ErrorKind::io, path + ": there is no folder " + folder.string());
+    if (!fs::is_directory(folder, ignored))
+        throw Error(ErrorKind::io, path + ": there is no folder " + folder.string());
 }
 
 void write_image(const std::string& path, const Image& image, const Metadata& metadata) {

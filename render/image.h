@@ -1,5 +1,5 @@
-// image.h -- pixels and files. image_oiio.cpp, the only file that includes OpenImageIO, is a module loaded when an image
-// is first written: linking OpenImageIO would cost every start of the program half a second.
+// image.h -- pixels and files. image_oiio.cpp, the only file that includes OpenImageIO, is a module loaded when an
+// image is first written: linking OpenImageIO would cost every start of the program half a second.
 #pragma once
 #include <string>
 #include <utility>

@@ -15,8 +15,8 @@ struct IsoparmImagePixels {
     const void* data;
 };
 
-/// Writes `file` in the format of its extension and reads it back; `lossy` formats need only come back in the same size.
-/// Returns 0 or fills `error`.
+/// Writes `file` in the format of its extension and reads it back; `lossy` formats need only come back in the same
+/// size. Returns 0 or fills `error`.
 int isoparm_image_write(const char* file, const IsoparmImagePixels* pixels, int lossy, const char* const* names,
                         const char* const* values, int metadata, IsoparmImageError* error);
 
@@ -24,5 +24,4 @@ int isoparm_image_write(const char* file, const IsoparmImagePixels* pixels, int 
 /// file holds integers. Returns 0 or fills `error`.
 typedef void (*IsoparmImageSink)(void* user, int width, int height, int channels, int integers, const float* data);
 int isoparm_image_read(const char* file, IsoparmImageSink sink, void* user, IsoparmImageError* error);
-
 }

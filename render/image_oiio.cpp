@@ -51,12 +51,14 @@ std::vector<unsigned char> read_pixels(OIIO::ImageInput& in, OIIO::TypeDesc form
 void check_written(const char* file, const IsoparmImagePixels& p, const void* data, OIIO::TypeDesc format, bool lossy) {
     const auto in = opened(file);
     const auto back = read_pixels(*in, format);
-    const bool same_size = in->spec().width == p.width && in->spec().height == p.height && in->spec().nchannels == p.channels;
+    const bool same_size =
+        in->spec().width == p.width && in->spec().height == p.height && in->spec().nchannels == p.channels;
     if (!same_size || (!lossy && std::memcmp(back.data(), data, back.size()) != 0))
         throw std::runtime_error("the file does not read back as it was written; is the disk full?");
 }
 
-void write(const char* file, const IsoparmImagePixels& p, bool lossy, const char* const* names, const char* const* values, int metadata) {
+void write(const char* file, const IsoparmImagePixels& p, bool lossy, const char* const* names,
+           const char* const* values, int metadata) {
     const OIIO::TypeDesc format = p.half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8;
     const std::size_t count = std::size_t(p.width) * p.height * p.channels;
     std::vector<unsigned char> halves;
@@ -85,7 +87,8 @@ void read(const char* file, IsoparmImageSink sink, void* user) {
     const auto in = opened(file);
     const auto data = read_pixels(*in, OIIO::TypeDesc::FLOAT);
     const OIIO::ImageSpec& spec = in->spec();
-    sink(user, spec.width, spec.height, spec.nchannels, !spec.format.is_floating_point(), reinterpret_cast<const float*>(data.data()));
+    sink(user, spec.width, spec.height, spec.nchannels, !spec.format.is_floating_point(),
+         reinterpret_cast<const float*>(data.data()));
 }
 
 }  // namespace

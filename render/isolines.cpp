@@ -38,7 +38,8 @@ double isoline_cover(const Isolines& lines, const PatchPlace& place, const Camer
     double cover = std::max(family(lines.u, r.u0, r.u1, place.u, x.x, y.x, lines.width),
                             family(lines.v, r.v0, r.v1, place.v, x.y, y.y, lines.width));
     if (place.domain == Domain::triangle)
-        cover = std::max(cover, family(std::max(lines.u, lines.v), 0, 1, 1 - place.u - place.v, -x.x - x.y, -y.x - y.y, lines.width));
+        cover = std::max(cover, family(std::max(lines.u, lines.v), 0, 1, 1 - place.u - place.v, -x.x - x.y, -y.x - y.y,
+                                       lines.width));
     return lines.opacity * cover;
 }
 

@@ -14,9 +14,9 @@ struct PatchPlace {
     Point du, dv;  // S_u, S_v, finite
 };
 
-/// How much of the line colour covers a sample at `position`, seen along `direction`; 0 off the lines. The distance to the
-/// nearest line is that of the parameter divided by its gradient over the picture (first order), so lines are as wide as
-/// asked wherever the surface is seen from, and fade where they come closer to each other than they are wide.
+/// How much of the line colour covers a sample at `position`, seen along `direction`; 0 off the lines. The distance to
+/// the nearest line is that of the parameter divided by its gradient over the picture (first order), so lines are as
+/// wide as asked wherever the surface is seen from, and fade where they come closer to each other than they are wide.
 /// On triangles a third family w = const joins, as many as the larger of the two others.
 double isoline_cover(const Isolines& lines, const PatchPlace& place, const Camera& camera, const Point& position,
                      const Point& direction);

@@ -2,11 +2,13 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <thread>
 
 #include "camera.h"
+#include "drawn.h"
 #include "error.h"
 #include "sampler.h"
 #include "shade.h"
@@ -16,8 +18,8 @@
 namespace isoparm {
 namespace {
 
-constexpr int kTile = 16;                // pixels a side
-constexpr double kMeshShare = 0.2;       // of the progress bar
+constexpr int kTile = 16;           // pixels a side
+constexpr double kMeshShare = 0.2;  // of the progress bar
 constexpr int kLargestSize = 1 << 16, kMostSamples = 1 << 16;
 
 struct Rgba {
@@ -45,8 +47,10 @@ public:
                 const Vec2 at = filter_(sampler(first + i, 0));
                 rays[i] = camera_.ray(x + 0.5 + at.x, y + 0.5 + at.y);
             }
-            if (scene_.embree->translucent()) add_layers(sampler, rays, first, n, sum);
-            else add_nearest(sampler, rays, first, n, sum);
+            if (scene_.embree->translucent())
+                add_layers(sampler, rays, first, n, sum);
+            else
+                add_nearest(sampler, rays, first, n, sum);
         }
         return {sum.color / double(samples_), sum.alpha / samples_};
     }
@@ -113,7 +117,8 @@ struct Area {
 };
 
 /// Calls `progress` from the calling thread only, which works on tiles like the others.
-void trace(const Tracer& tracer, const Area& area, const std::optional<Color>& background, const std::function<void(double)>& progress, Image& image) {
+void trace(const Tracer& tracer, const Area& area, const std::optional<Color>& background,
+           const std::function<void(double)>& progress, Image& image) {
     const int across = (area.width() + kTile - 1) / kTile, tiles = across * ((area.height() + kTile - 1) / kTile);
     const auto caller = std::this_thread::get_id();
     std::atomic<int> done{0};
@@ -134,7 +139,8 @@ void trace(const Tracer& tracer, const Area& area, const std::optional<Color>& b
 
 int checked_size(int size, const char* what, int most) {
     if (size < 1 || size > most)
-        throw Error(ErrorKind::usage, std::string("the picture's ") + what + " is " + std::to_string(size) + ", expected 1 to " + std::to_string(most));
+        throw Error(ErrorKind::usage, std::string("the picture's ") + what + " is " + std::to_string(size) +
+                                          ", expected 1 to " + std::to_string(most));
     return size;
 }
 
@@ -143,15 +149,19 @@ Area checked_area(const RenderOptions& options, int width, int height) {
     const auto& c = *options.crop;
     const Area a{c[0], c[1], c[2], c[3]};
     if (a.x0 < 0 || a.y0 < 0 || a.x1 > width || a.y1 > height || a.x0 >= a.x1 || a.y0 >= a.y1)
-        throw Error(ErrorKind::usage, "the crop " + std::to_string(a.x0) + "," + std::to_string(a.y0) + "," + std::to_string(a.x1) + "," +
-                                          std::to_string(a.y1) + " is no part of a picture of " + std::to_string(width) + "x" + std::to_string(height) +
-                                          " pixels: expected x0,y0,x1,y1 with 0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height");
+        throw Error(ErrorKind::usage,
+                    "the crop " + std::to_string(a.x0) + "," + std::to_string(a.y0) + "," + std::to_string(a.x1) + "," +
+                        std::to_string(a.y1) + " is no part of a picture of " + std::to_string(width) + "x" +
+                        std::to_string(height) +
+                        " pixels: expected x0,y0,x1,y1 with 0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height");
     return a;
 }
 
 double in_scene_units(const Tolerance& t, const Camera& camera, const Bounds& box) {
+    const double size =
+        box.diagonal() > 0 ? box.diagonal() : 1;  // a single ball: nothing to tessellate, but tubes to round
     const double absolute = t.unit == Tolerance::Unit::absolute   ? t.value
-                            : t.unit == Tolerance::Unit::relative ? t.value * box.diagonal()
+                            : t.unit == Tolerance::Unit::relative ? t.value * size
                                                                   : t.value * finest_pixel(camera, box);
     if (!(absolute > 0) || !std::isfinite(absolute))
         throw_input("the tolerance comes to " + to_text(absolute) + " scene units, expected more than 0");
@@ -167,12 +177,16 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 Picture render(const Scene& scene, const RenderOptions& options) {
     const int width = checked_size(options.width ? options.width : scene.image.width, "width", kLargestSize);
     const int height = checked_size(options.height ? options.height : scene.image.height, "height", kLargestSize);
-    const int samples = checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples);
+    const int samples =
+        checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples);
     const Area area = checked_area(options, width, height);
     const Camera camera = make_camera(scene.camera, drawn_points(scene), width, height);
+    double reached = 0;  // progress never runs backwards, whatever its parts report
     const auto part_of_progress = [&](double from, double share) -> std::function<void(double)> {
         if (!options.progress) return {};
-        return [&options, from, share](double fraction) { options.progress(from + share * fraction); };
+        return [&, from, share](double fraction) {
+            options.progress(reached = std::max(reached, from + share * fraction));
+        };
     };
 
     Picture picture;
@@ -187,7 +201,8 @@ Picture render(const Scene& scene, const RenderOptions& options) {
     picture.image.width = area.width();
     picture.image.height = area.height();
     picture.image.pixels.resize(4 * static_cast<std::size_t>(area.width()) * area.height());
-    trace(Tracer(traced, camera, samples), area, scene.image.background, part_of_progress(kMeshShare, 1 - kMeshShare), picture.image);
+    trace(Tracer(traced, camera, samples), area, scene.image.background, part_of_progress(kMeshShare, 1 - kMeshShare),
+          picture.image);
     picture.seconds_trace = seconds_since(start);
     return picture;
 }

@@ -9,10 +9,10 @@
 namespace isoparm {
 
 struct RenderOptions {
-    int width = 0, height = 0, samples = 0;      // 0: as the scene says
-    std::optional<Tolerance> tolerance;          // none: as the scene says
-    std::optional<std::array<int, 4>> crop;      // x0,y0,x1,y1 in pixels; the picture is then only that part
-    std::function<void(double)> progress;        // fraction done; called from the calling thread
+    int width = 0, height = 0, samples = 0;  // 0: as the scene says
+    std::optional<Tolerance> tolerance;      // none: as the scene says
+    std::optional<std::array<int, 4>> crop;  // x0,y0,x1,y1 in pixels; the picture is then only that part
+    std::function<void(double)> progress;    // fraction done; called from the calling thread
 };
 
 struct Picture {

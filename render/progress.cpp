@@ -39,7 +39,8 @@ std::string progress_line(const std::string& title, double fraction, double seco
     return line.substr(0, std::max(0, columns - 1));
 }
 
-ProgressBar::ProgressBar(std::string title, bool quiet) : title_(std::move(title)), enabled_(!quiet && isatty(STDERR_FILENO)) {}
+ProgressBar::ProgressBar(std::string title, bool quiet)
+    : title_(std::move(title)), enabled_(!quiet && isatty(STDERR_FILENO)) {}
 
 ProgressBar::~ProgressBar() {
     if (shown_) std::fputs("\r\033[K", stderr);

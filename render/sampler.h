@@ -1,6 +1,6 @@
 // sampler.h -- where in a pixel, on a light, over a hemisphere the samples lie: Owen-scrambled Sobol' points in padded
-// pairs of dimensions (Burley, Practical Hash-based Owen Scrambling, JCGT 2020; hash of Vegdahl 2021). A pure function of
-// pixel, sample and dimension, so the picture depends neither on threads nor on which part of it is rendered.
+// pairs of dimensions (Burley, Practical Hash-based Owen Scrambling, JCGT 2020; hash of Vegdahl 2021). A pure function
+// of pixel, sample and dimension, so the picture depends neither on threads nor on which part of it is rendered.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -42,14 +42,16 @@ class PixelSampler {
 public:
     /// For `samples` samples of the pixel (x,y) of the whole picture.
     PixelSampler(int x, int y, int samples)
-        : seed_(sampling::mixed(static_cast<std::uint32_t>(x) + sampling::mixed(static_cast<std::uint32_t>(y) + 0x9e3779b9u))),
+        : seed_(sampling::mixed(static_cast<std::uint32_t>(x) +
+                                sampling::mixed(static_cast<std::uint32_t>(y) + 0x9e3779b9u))),
           bits_(std::max(1, static_cast<int>(std::bit_width(static_cast<std::uint32_t>(samples - 1))))) {}
 
     /// A point of [0,1)^2; over all samples those of one dimension fill the square evenly.
     Vec2 operator()(int sample, int dimension) const {
         using namespace sampling;
         const std::uint32_t seed = mixed(seed_ + 0x85ebca6bu * static_cast<std::uint32_t>(dimension));
-        const std::uint32_t i = owen_scrambled(static_cast<std::uint32_t>(sample) << (32 - bits_), seed) >> (32 - bits_);
+        const std::uint32_t i =
+            owen_scrambled(static_cast<std::uint32_t>(sample) << (32 - bits_), seed) >> (32 - bits_);
         std::uint32_t y = 0;
         for (std::uint32_t k = i, v = 1u << 31; k; k >>= 1, v ^= v >> 1)
             if (k & 1) y ^= v;
@@ -69,25 +71,31 @@ class PixelFilter {
 public:
     static constexpr double radius = 1.5;  // pixels
     PixelFilter() {
-        double sum = 0;
-        for (int i = 0; i <= kSteps; ++i) {
-            const double a = 2 * std::numbers::pi * i / kSteps;
-            sum += i == 0 ? 0 : 0.35875 - 0.48829 * std::cos(a) + 0.14128 * std::cos(2 * a) - 0.01168 * std::cos(3 * a);
-            cumulated_[i] = sum;
+        // The inverse of the filter's integral, tabled: its ends are flat, so that the table is fine where it matters.
+        std::array<double, kSteps + 1> integral{};
+        for (int i = 1; i <= kSteps; ++i) {
+            const double a = 2 * std::numbers::pi * (i - 0.5) / kSteps;
+            integral[i] = integral[i - 1] + 0.35875 - 0.48829 * std::cos(a) + 0.14128 * std::cos(2 * a) -
+                          0.01168 * std::cos(3 * a);
         }
-        for (double& c : cumulated_) c /= sum;
+        for (int k = 0, i = 1; k <= kSteps; ++k) {
+            const double s = integral[kSteps] * k / kSteps;
+            while (i < kSteps && integral[i] < s) ++i;
+            const double t = (s - integral[i - 1]) / (integral[i] - integral[i - 1]);
+            place_[k] = radius * (2 * (i - 1 + t) / kSteps - 1);
+        }
     }
+    /// Where in the picture, relative to the middle of the pixel, for a point of [0,1)^2.
     Vec2 operator()(const Vec2& s) const { return {place(s.x), place(s.y)}; }
 
 private:
     double place(double s) const {
-        const auto above = std::upper_bound(cumulated_.begin(), cumulated_.end() - 1, s);
-        const auto i = above - cumulated_.begin();
-        const double t = (s - cumulated_[i - 1]) / (cumulated_[i] - cumulated_[i - 1]);
-        return radius * (2 * (i - 1 + t) / kSteps - 1);
+        const double x = s * kSteps;
+        const int i = static_cast<int>(x);
+        return place_[i] + (x - i) * (place_[i + 1] - place_[i]);
     }
-    static constexpr int kSteps = 256;
-    std::array<double, kSteps + 1> cumulated_{};
+    static constexpr int kSteps = 1024;
+    std::array<double, kSteps + 1> place_{};
 };
 
 }  // namespace isoparm

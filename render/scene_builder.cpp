@@ -52,7 +52,9 @@ template <class Built> Built build_typed(const char* what, std::span<const Scene
         } catch (const IncompatibleError& e) {
             j.fail(e.condition() + ": found a gap of " + to_text(e.gap()) + ", expected at most " + to_text(e.tolerance()));
         } catch (const Error& e) {
-            j.fail(std::string(t.name) + ": " + e.what());
+            const std::string message = e.what();
+            const bool complete = message.find("found ") != std::string::npos;
+            j.fail(std::string(t.name) + ": " + (complete ? "" : "found data that do not make one, expected others: ") + message);
         }
     }
     type.expected(expected + did_you_mean(type.string(), names));

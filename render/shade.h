@@ -1,5 +1,6 @@
-// shade.h -- how a point of a surface looks: soft plastic under a key light, a fill and a sky that come with the camera,
-// so that every figure is lit like the next one. Nothing is ever brighter than white: highlights blend toward it.
+// shade.h -- how a point of a surface looks: soft plastic under a key light, a fill and a sky that come with the
+// camera, so that every figure is lit like the next one. Nothing is ever brighter than white: highlights blend toward
+// it.
 #pragma once
 #include "embree_scene.h"
 #include "sampler.h"

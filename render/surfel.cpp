@@ -7,20 +7,24 @@
 namespace isoparm {
 namespace {
 
-Point derivative(const PointJet& j, int i, int k) { return {j.x.coefficient(i, k), j.y.coefficient(i, k), j.z.coefficient(i, k)}; }
+Point derivative(const PointJet& j, int i, int k) {
+    return {j.x.coefficient(i, k), j.y.coefficient(i, k), j.z.coefficient(i, k)};
+}
 
 /// Parameters of the hit: those of the corners, weighted as the hit is.
 Vec2 parameters(const Patch& patch, const MeshPart& part, const std::array<std::uint32_t, 3>& corners, const Hit& hit) {
     const Vec2 &a = part.uv[corners[0]], &b = part.uv[corners[1]], &c = part.uv[corners[2]];
     const double w = 1 - hit.u - hit.v;
     const Rect r = patch.rect();
-    Vec2 p{std::clamp(w * a.x + hit.u * b.x + hit.v * c.x, r.u0, r.u1), std::clamp(w * a.y + hit.u * b.y + hit.v * c.y, r.v0, r.v1)};
+    Vec2 p{std::clamp(w * a.x + hit.u * b.x + hit.v * c.x, r.u0, r.u1),
+           std::clamp(w * a.y + hit.u * b.y + hit.v * c.y, r.v0, r.v1)};
     if (patch.domain() == Domain::triangle && p.x + p.y > 1) p.y = 1 - p.x;
     return p;
 }
 
 /// Unit; not yet turned to the viewer. `otherwise` where the patch has no normal.
-Point normal_of(const Patch& patch, const PointJet& jet, const Point& du, const Point& dv, const Vec2& at, const Point& otherwise) {
+Point normal_of(const Patch& patch, const PointJet& jet, const Point& du, const Point& dv, const Vec2& at,
+                const Point& otherwise) {
     const Point n = cross(du, dv);
     const double nn = dot(n, n);
     if (nn > 1e-18 * dot(du, du) * dot(dv, dv) && std::isfinite(nn)) return n / std::sqrt(nn);
@@ -68,7 +72,8 @@ Surfel surfel_at(const TracedScene& scene, const Camera& camera, const Ray& ray,
     s.color = front ? thing.front : thing.back;
     if (finite(du) && finite(dv)) {
         s.ink = thing.isolines.color;
-        s.ink_cover = isoline_cover(thing.isolines, {thing.patch->domain(), thing.patch->rect(), at.x, at.y, du, dv}, camera, position, ray.direction);
+        s.ink_cover = isoline_cover(thing.isolines, {thing.patch->domain(), thing.patch->rect(), at.x, at.y, du, dv},
+                                    camera, position, ray.direction);
     }
     return s;
 }

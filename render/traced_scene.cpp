@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "drawn.h"
 #include "error.h"
 #include "palette.h"
 #include "tessellate.h"
@@ -12,33 +13,17 @@
 namespace isoparm {
 namespace {
 
-// Default radii, as parts of the diagonal of the scene's box.
-constexpr double kTube = 0.004, kRod = 0.0022, kBall = 0.012;
-constexpr double kNetBall = 2.2;  // balls of a net, in radii of its rods
-
-const Surface& surface_of(const Scene& scene, const SceneObject& o) {
-    if (const Surface* s = scene.find_surface(o.name)) return *s;
-    throw_input("there is no surface named \"" + o.name + "\" to draw");
-}
-const Curve& curve_of(const Scene& scene, const SceneObject& o) {
-    if (const Curve* c = scene.find_curve(o.name)) return *c;
-    throw_input("there is no curve named \"" + o.name + "\" to draw");
-}
-
-double default_radius(const SceneObject& o, double size) {
-    const double part = o.kind == SceneObject::Kind::net ? kRod : o.kind == SceneObject::Kind::point ? kBall : kTube;
-    return o.radius.value_or(part * size);
-}
-
-/// Whether the triangles wind about the hollow side. The front of what is closed, or nearly, is its outside, and of a dome
-/// its convex side: that from which the signed volume over the middle is positive. A sheet that is neither keeps its own.
+/// Whether the triangles wind about the hollow side. The front of what is closed, or nearly, is its outside, and of a
+/// dome its convex side: that from which the signed volume over the middle is positive. A sheet that is neither keeps
+/// its own.
 bool inside_out(const Mesh& mesh) {
     double volume = 0, area = 0;
     Point middle;
     const auto each = [&](auto use) {
         for (const MeshPart& part : mesh.parts)
             for (const auto& t : part.triangles) {
-                const Point &a = mesh.positions[part.vertex[t[0]]], &b = mesh.positions[part.vertex[t[1]]], &c = mesh.positions[part.vertex[t[2]]];
+                const Point &a = mesh.positions[part.vertex[t[0]]], &b = mesh.positions[part.vertex[t[1]]],
+                            &c = mesh.positions[part.vertex[t[2]]];
                 use(a, b, c, 0.5 * cross(b - a, c - a));
             }
     };
@@ -59,6 +44,10 @@ public:
         const Bounds box = bounding_box(scene);
         size_ = box.diagonal() > 0 ? box.diagonal() : 1;
         result_.embree = std::make_unique<EmbreeScene>(0.5 * (box.low + box.high));
+        // Room for the rounding to float32, half a unit in the last place of each coordinate about the centre; a
+        // tolerance below that cannot be kept, and certified_error will say so.
+        const double float_error = 0x1.00001p-24 * 0.5 * size_;
+        mesh_tolerance_ = tolerance > 2 * float_error ? tolerance - float_error : tolerance;
     }
 
     TracedScene run() {
@@ -69,7 +58,8 @@ public:
         }
         result_.embree->commit();
         // The traced mesh is the certified one moved by the rounding of its vertices.
-        if (result_.triangles > 0) result_.certified_error += result_.embree->rounding();
+        if (result_.triangles > 0)
+            result_.certified_error = rounding::up(result_.certified_error + result_.embree->rounding());
         for (Thing& thing : result_.things)
             if (thing.patch) thing.error += result_.embree->rounding();
         return std::move(result_);
@@ -78,13 +68,15 @@ public:
 private:
     void add(const SceneObject& o, std::size_t objects) {
         switch (o.kind) {
-            case SceneObject::Kind::surface: return add_surface(o, objects);
+            case SceneObject::Kind::surface:
+                return add_surface(o, objects);
             case SceneObject::Kind::curve:
                 add_curves(o, {drawn(curve_of(scene_, o))}, o.color.value_or(curve_color()), o.opacity);
                 return;
-            case SceneObject::Kind::net: return add_net(o);
+            case SceneObject::Kind::net:
+                return add_net(o);
             case SceneObject::Kind::point:
-                add_balls({o.point}, default_radius(o, size_), o.color.value_or(point_color()), o.opacity);
+                add_balls({o.point}, radius_of(o, size_), o.color.value_or(point_color()), o.opacity);
         }
     }
 
@@ -114,7 +106,7 @@ private:
         const Mesh*& known = mesh_of_[&surface];
         if (known) return *known;
         TessellationOptions options;
-        options.tolerance = tolerance_;
+        options.tolerance = mesh_tolerance_;
         options.progress = [&](double fraction) { report(fraction, objects); };
         Tessellation t = [&] {
             try {
@@ -137,7 +129,8 @@ private:
                 DrawnCurve edge = drawn_edge(m.patch, k);
                 const std::array<Point, 3> p{edge.position(0), edge.position(0.5), edge.position(1)};
                 const bool known = std::any_of(seen.begin(), seen.end(), [&](const auto& q) {
-                    return same(p[1], q[1]) && ((same(p[0], q[0]) && same(p[2], q[2])) || (same(p[0], q[2]) && same(p[2], q[0])));
+                    return same(p[1], q[1]) &&
+                           ((same(p[0], q[0]) && same(p[2], q[2])) || (same(p[0], q[2]) && same(p[2], q[0])));
                 });
                 if (known) continue;
                 seen.push_back(p);
@@ -147,7 +140,7 @@ private:
     }
 
     void add_curves(const SceneObject& o, const std::vector<DrawnCurve>& curves, const Color& color, double opacity) {
-        const double radius = default_radius(o, size_);
+        const double radius = radius_of(o, size_);
         std::vector<CubicPiece> pieces;
         std::vector<Point> joints;  // balls close the ends and round the corners
         for (const DrawnCurve& curve : curves) {
@@ -170,7 +163,7 @@ private:
     }
 
     void add_net(const SceneObject& o) {
-        const double radius = default_radius(o, size_);
+        const double radius = radius_of(o, size_);
         std::vector<CubicPiece> rods;
         for (const auto& [i, j] : o.net.rods) {
             const Point a = o.net.points.at(i), d = o.net.points.at(j);
@@ -204,69 +197,14 @@ private:
     }
 
     const Scene& scene_;
-    double tolerance_, size_ = 1;
+    double tolerance_, mesh_tolerance_ = 0, size_ = 1;
     const std::function<void(double)>& progress_;
     TracedScene result_;
     std::map<const Surface*, const Mesh*> mesh_of_;
     std::size_t done_ = 0, surfaces_ = 0;
 };
 
-void sample(const Patch& patch, std::vector<Point>& out) {
-    constexpr int n = 16;
-    const Rect r = patch.rect();
-    for (int i = 0; i <= n; ++i)
-        for (int j = 0; j <= (patch.domain() == Domain::quad ? n : n - i); ++j)
-            out.push_back(patch.point(r.u0 + (r.u1 - r.u0) * i / n, r.v0 + (r.v1 - r.v0) * j / n));
-}
-
-void add_around(const Point& p, double radius, std::vector<Point>& out) {
-    for (const Point& d : {Point{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
-        out.push_back(p + radius * d);
-        out.push_back(p - radius * d);
-    }
-}
-
 }  // namespace
-
-std::vector<SceneObject> drawn_objects(const Scene& scene) {
-    if (!scene.objects.empty()) return scene.objects;
-    std::vector<SceneObject> all;
-    for (const Surface& s : scene.surfaces) {
-        SceneObject& o = all.emplace_back();
-        o.kind = SceneObject::Kind::surface;
-        o.name = s.name;
-    }
-    for (const auto& [name, curve] : scene.curves) {
-        SceneObject& o = all.emplace_back();
-        o.kind = SceneObject::Kind::curve;
-        o.name = name;
-    }
-    return all;
-}
-
-std::vector<Point> drawn_points(const Scene& scene) {
-    const double size = bounding_box(scene).diagonal();
-    std::vector<Point> points;
-    for (const SceneObject& o : drawn_objects(scene)) {
-        const double radius = default_radius(o, size);
-        switch (o.kind) {
-            case SceneObject::Kind::surface:
-                for (const Member& m : surface_of(scene, o).patches) sample(m.patch, points);
-                break;
-            case SceneObject::Kind::curve: {
-                const Curve& c = curve_of(scene, o);
-                for (int i = 0; i <= 64; ++i) add_around(c(c.begin() + (c.end() - c.begin()) * i / 64), radius, points);
-                break;
-            }
-            case SceneObject::Kind::net:
-                for (const Point& p : o.net.points) add_around(p, kNetBall * radius, points);
-                break;
-            case SceneObject::Kind::point: add_around(o.point, radius, points);
-        }
-    }
-    std::erase_if(points, [](const Point& p) { return !finite(p); });
-    return points;
-}
 
 TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress) {
     return Builder(scene, tolerance, progress).run();

@@ -14,7 +14,7 @@ namespace isoparm {
 struct Thing {
     Color front, back;  // colours of the two sides, linear
     double opacity = 1;
-    double error = 0;   // scene units
+    double error = 0;         // scene units
     bool inside_out = false;  // triangles wind about the back
     Isolines isolines;
     const Patch* patch = nullptr;
@@ -30,10 +30,6 @@ struct TracedScene {
     double certified_error = 0;  // of all meshes, float32 included
 };
 
-/// What is drawn: the scene's objects, or all its surfaces and curves when it has none.
-std::vector<SceneObject> drawn_objects(const Scene& scene);
-/// Points all over what is drawn, for cameras that fit. Do not depend on a tolerance.
-std::vector<Point> drawn_points(const Scene& scene);
 /// Tessellates every surface that is drawn, once each, within `tolerance` (scene units). Refers to patches of `scene`,
 /// which must live as long. Throws what tessellate() throws, with the surface's name.
 TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress);

@@ -45,7 +45,11 @@ bool collapsed(const std::vector<CubicPiece>& pieces, double tolerance) {
 }  // namespace
 
 DrawnCurve drawn(const Curve& curve) {
-    DrawnCurve d{curve.begin(), curve.end(), {}, [curve](double t) { return curve(t); }, [curve](double t) { return curve.derivative(t); }};
+    DrawnCurve d{curve.begin(),
+                 curve.end(),
+                 {},
+                 [curve](double t) { return curve(t); },
+                 [curve](double t) { return curve.derivative(t); }};
     for (const Break& b : curve.breaks()) d.breaks.push_back(b.t);
     return d;
 }
@@ -61,7 +65,8 @@ DrawnCurve drawn_edge(const Patch& patch, int k) {
     d.derivative = [patch, k, du, dv](double t) {
         const Vec2 uv = patch.edge_point(k, t);
         const PointJet j = patch.jet(uv.x, uv.y);
-        return Point{du * j.x.coefficient(1, 0) + dv * j.x.coefficient(0, 1), du * j.y.coefficient(1, 0) + dv * j.y.coefficient(0, 1),
+        return Point{du * j.x.coefficient(1, 0) + dv * j.x.coefficient(0, 1),
+                     du * j.y.coefficient(1, 0) + dv * j.y.coefficient(0, 1),
                      du * j.z.coefficient(1, 0) + dv * j.z.coefficient(0, 1)};
     };
     return d;

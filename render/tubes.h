@@ -22,8 +22,8 @@ DrawnCurve drawn(const Curve& curve);
 /// Edge k of a patch.
 DrawnCurve drawn_edge(const Patch& patch, int k);
 
-/// Pieces within `tolerance` of the curve (checked at inner points of each piece), tangent to it where they join. A cubic
-/// comes back as itself; empty when the curve is shorter than the tolerance.
+/// Pieces within `tolerance` of the curve (checked at inner points of each piece), tangent to it where they join. A
+/// cubic comes back as itself; empty when the curve is shorter than the tolerance.
 std::vector<CubicPiece> cubic_pieces(const DrawnCurve& curve, double tolerance);
 
 }  // namespace isoparm

@@ -1,5 +1,5 @@
-// golden_test.cpp -- every surface built here against values computed with 50 digits by an independent program: position,
-// first and second derivatives and unit normal to 1e-12 relative, and the limits at singular corners.
+// golden_test.cpp -- every surface built here against values computed with 50 digits by an independent program:
+// position, first and second derivatives and unit normal to 1e-12 relative, and the limits at singular corners.
 #include <gtest/gtest.h>
 #include <json/json.h>
 
@@ -60,18 +60,25 @@ double magnitude(const Json::Value& v) {
     double m = 0;
     if (v.isObject() || v.isArray())
         for (const auto& x : v) m = std::max(m, magnitude(x));
-    else if (v.isNumeric()) m = std::abs(v.asDouble());
-    else if (v.isString()) m = std::abs(std::strtod(v.asCString(), nullptr));
+    else if (v.isNumeric())
+        m = std::abs(v.asDouble());
+    else if (v.isString())
+        m = std::abs(std::strtod(v.asCString(), nullptr));
     return m;
 }
 Curve bezier(const Json::Value& v) { return make_bezier(points(v)); }
-Curve quarter_circle(const Point& from, const Point& to) { return make_bezier({from, from + to, to}, {1, kHalfRoot, 1}); }
+Curve quarter_circle(const Point& from, const Point& to) {
+    return make_bezier({from, from + to, to}, {1, kHalfRoot, 1});
+}
 
-CoonsCurves coons_curves(const Json::Value& d) { return {bezier(d["c0"]), bezier(d["c1"]), bezier(d["d0"]), bezier(d["d1"])}; }
+CoonsCurves coons_curves(const Json::Value& d) {
+    return {bezier(d["c0"]), bezier(d["c1"]), bezier(d["d0"]), bezier(d["d1"])};
+}
 HermiteData hermite_data(const Json::Value& d) {
     const auto& f = d["f=[x(0,v),xu(0,v),xu(1,v),x(1,v)]"];
     const auto& g = d["g=[x(u,0),xv(u,0),xv(u,1),x(u,1)]"];
-    return {{bezier(f[0]), bezier(f[1]), bezier(f[2]), bezier(f[3])}, {bezier(g[0]), bezier(g[1]), bezier(g[2]), bezier(g[3])}};
+    return {{bezier(f[0]), bezier(f[1]), bezier(f[2]), bezier(f[3])},
+            {bezier(g[0]), bezier(g[1]), bezier(g[2]), bezier(g[3])}};
 }
 std::array<Curve, 3> triangle_edges(const Json::Value& d) {
     if (d.isMember("E1")) return {bezier(d["E1"]), bezier(d["E2"]), bezier(d["E3"])};
@@ -153,8 +160,8 @@ void expect_point(const Patch& patch, double u, double v, const Json::Value& e, 
 
 class Golden : public ::testing::TestWithParam<std::string> {};
 
-/// Points of one cell of a composite surface are given in the cell's own parameters. Second derivatives may jump between
-/// cells and a patch answers for the cell to the right: the upper end of a cell is approached from within.
+/// Points of one cell of a composite surface are given in the cell's own parameters. Second derivatives may jump
+/// between cells and a patch answers for the cell to the right: the upper end of a cell is approached from within.
 double in_cell(const Json::Value& data, int axis, const Json::Value& at) {
     if (!data.isMember("cell")) return number(at);
     const double t = data["cell"][axis].asDouble() + number(at);
@@ -179,11 +186,12 @@ TEST_P(Golden, VertexLimitsExist) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Surface, Golden, ::testing::ValuesIn(golden()["surfaces"].getMemberNames()), [](const auto& info) {
-    std::string name = info.param;
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Surface, Golden, ::testing::ValuesIn(golden()["surfaces"].getMemberNames()),
+                         [](const auto& info) {
+                             std::string name = info.param;
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
 
 TEST(GoldenLimits, NetworkThroughIsocurvesIsTheSame) {
     const auto& e = golden()["surfaces"]["network_624_625_cell_10"];

@@ -17,8 +17,18 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kMax = std::numeric_limits<double>::max();
 constexpr double kMin = std::numeric_limits<double>::min();
 constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
-const std::vector<double> kEdges{0.0,  -0.0, 1,     -1,      kDenormal, -kDenormal, kMin,   -kMin,     kMax,   -kMax,         1e308,         -1e308, 1e-160,
-                                 -1e-160, 1e-300, 3.0, 1.0 / 3, -1.0 / 3, 1e16,       1 + 0x1p-52, 1 - 0x1p-53, 123456789.123456789, 0x1p-1060};
+const std::vector<double> kEdges{0.0,         -0.0,
+                                 1,           -1,
+                                 kDenormal,   -kDenormal,
+                                 kMin,        -kMin,
+                                 kMax,        -kMax,
+                                 1e308,       -1e308,
+                                 1e-160,      -1e-160,
+                                 1e-300,      3.0,
+                                 1.0 / 3,     -1.0 / 3,
+                                 1e16,        1 + 0x1p-52,
+                                 1 - 0x1p-53, 123456789.123456789,
+                                 0x1p-1060};
 
 // Quadruple precision holds the product of two doubles exactly, and rounds monotonically: where the law below holds for
 // the exact result it holds for the rounded one.
@@ -39,14 +49,20 @@ Interval any_interval(Random& r) {
 }
 double inside(Random& r, const Interval& a) {
     switch (r.integer(0, 3)) {
-        case 0: return a.lo;
-        case 1: return a.hi;
-        case 2: return a.contains(0) ? 0 : mid(a);
-        default: return std::clamp(a.lo * 0.5 + a.hi * 0.5 + r.number(-1, 1) * (a.hi * 0.5 - a.lo * 0.5), a.lo, a.hi);
+        case 0:
+            return a.lo;
+        case 1:
+            return a.hi;
+        case 2:
+            return a.contains(0) ? 0 : mid(a);
+        default:
+            return std::clamp(a.lo * 0.5 + a.hi * 0.5 + r.number(-1, 1) * (a.hi * 0.5 - a.lo * 0.5), a.lo, a.hi);
     }
 }
 void expect_holds(const Interval& result, Wide exact, const char* what, double x, double y) {
-    EXPECT_TRUE(Wide(result.lo) <= exact && exact <= Wide(result.hi)) << what << " of " << to_text(x) << ", " << to_text(y) << " is not in [" << to_text(result.lo) << ", " << to_text(result.hi) << "]";
+    EXPECT_TRUE(Wide(result.lo) <= exact && exact <= Wide(result.hi))
+        << what << " of " << to_text(x) << ", " << to_text(y) << " is not in [" << to_text(result.lo) << ", "
+        << to_text(result.hi) << "]";
     EXPECT_LE(result.lo, result.hi);
 }
 
@@ -97,7 +113,9 @@ TEST(IntervalLaw, RoundingMovesByAboutOneUnit) {
 
 TEST(IntervalLaw, ZeroStaysZeroAndSignsStay) {
     const Interval zero(0), wide(-3, 5), positive(0, 2);
-    for (const Interval& z : {zero * wide, wide * zero, zero / Interval(2, 3), zero + zero, zero - zero, square(zero), sqrt(zero)}) EXPECT_TRUE(z.lo == 0 && z.hi == 0);
+    for (const Interval& z :
+         {zero * wide, wide * zero, zero / Interval(2, 3), zero + zero, zero - zero, square(zero), sqrt(zero)})
+        EXPECT_TRUE(z.lo == 0 && z.hi == 0);
     EXPECT_EQ((positive * positive).lo, 0);
     EXPECT_EQ((positive / Interval(1, 2)).lo, 0);
     EXPECT_EQ(square(wide).lo, 0);
@@ -110,11 +128,35 @@ TEST(IntervalLaw, WhatHasNoBoundIsAll) {
     const Interval all = Interval::all(), one(1), across(-1, 2);
     EXPECT_FALSE(all.bounded());
     EXPECT_TRUE(one.bounded());
-    for (const Interval& x : {one / across, one / Interval(0), one / Interval(0, 1), one / Interval(-1, 0), reciprocal(across), reciprocal(Interval(0)), Interval(0) / across,
-                              Interval(kMax) + Interval(kMax), Interval(kMax) * Interval(2), Interval(1e300) / Interval(1e-300), Interval(-kMax, kMax) - Interval(kMax), all + one, one - all,
-                              all * one, all * Interval(0), Interval(0) * all, all / one, one / all, all * all, sqrt(Interval(-2, -1)), Interval(kInf) + one, Interval(NAN) + one,
-                              Interval(NAN) * one, Interval(NAN) / one, one / Interval(NAN), Interval(kInf) * Interval(0), Interval(kInf) - Interval(kInf), -all})
+    for (const Interval& x : {one / across,
+                              one / Interval(0),
+                              one / Interval(0, 1),
+                              one / Interval(-1, 0),
+                              reciprocal(across),
+                              reciprocal(Interval(0)),
+                              Interval(0) / across,
+                              Interval(kMax) + Interval(kMax),
+                              Interval(kMax) * Interval(2),
+                              Interval(1e300) / Interval(1e-300),
+                              all + one,
+                              one - all,
+                              all * one,
+                              all * Interval(0),
+                              Interval(0) * all,
+                              all / one,
+                              one / all,
+                              all * all,
+                              sqrt(Interval(-2, -1)),
+                              Interval(kInf) + one,
+                              Interval(NAN) + one,
+                              Interval(NAN) * one,
+                              Interval(NAN) / one,
+                              one / Interval(NAN),
+                              Interval(kInf) * Interval(0),
+                              Interval(kInf) - Interval(kInf),
+                              -all})
         EXPECT_TRUE(is_all(x)) << "[" << x.lo << ", " << x.hi << "]";
+    EXPECT_EQ((Interval(-kMax, kMax) - Interval(kMax)).lo, -kInf);  // the other end has a bound
     EXPECT_EQ(square(all).hi, kInf);
     EXPECT_FALSE(sqrt(all).bounded());
     EXPECT_TRUE(is_all(log(Interval(0, 1))));
@@ -129,18 +171,21 @@ TEST(IntervalLaw, ElementaryFunctionsEncloseTheirValues) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Random r(seed);
         for (int n = 0; n < 2000; ++n) {
-            const double size = std::pow(10, r.number(-12, n % 5 ? 1.5 : 12)), a = r.number(-size, size), w = r.integer(0, 2) * std::pow(10, r.number(-16, 1));
+            const double size = std::pow(10, r.number(-12, n % 5 ? 1.5 : 12)), a = r.number(-size, size),
+                         w = r.integer(0, 2) * std::pow(10, r.number(-16, 1));
             const Interval t(a, a + w);
             const double x = inside(r, t);
             const auto holds = [&](const Interval& y, long double exact, const char* what) {
-                EXPECT_TRUE(static_cast<long double>(y.lo) <= exact && exact <= static_cast<long double>(y.hi)) << what << " of " << to_text(x) << " is not in [" << to_text(y.lo) << ", " << to_text(y.hi) << "]";
+                EXPECT_TRUE(static_cast<long double>(y.lo) <= exact && exact <= static_cast<long double>(y.hi))
+                    << what << " of " << to_text(x) << " is not in [" << to_text(y.lo) << ", " << to_text(y.hi) << "]";
             };
             holds(sin(t), std::sin(static_cast<long double>(x)), "sin");
             holds(cos(t), std::cos(static_cast<long double>(x)), "cos");
             if (x < 700) holds(exp(t), std::exp(static_cast<long double>(x)), "exp");
             if (x > 0) {
                 holds(log(t), std::log(static_cast<long double>(x)), "log");
-                for (double p : {0.5, 1.7, -0.3, 2.1}) holds(pow(t, p), std::pow(static_cast<long double>(x), static_cast<long double>(p)), "pow");
+                for (double p : {0.5, 1.7, -0.3, 2.1})
+                    holds(pow(t, p), std::pow(static_cast<long double>(x), static_cast<long double>(p)), "pow");
             }
         }
     }

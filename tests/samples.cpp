@@ -40,14 +40,19 @@ Grid<double> random_weights(Random& r, int rows, int columns) {
 }
 /// An affine map without symmetry, and the offset of the data after it.
 Transform random_map(Random& r) {
-    return Transform::translate(r.offset()) * Transform::mirror(r.vector() + Point{0, 0, 2}, 0.3) * Transform::rotate({1, 2, 3}, r.number(0, 360)) *
-           Transform::scale({1.5, 0.5, 2});
+    return Transform::translate(r.offset()) * Transform::mirror(r.vector() + Point{0, 0, 2}, 0.3) *
+           Transform::rotate({1, 2, 3}, r.number(0, 360)) * Transform::scale({1.5, 0.5, 2});
 }
 
 // ---- curves ---------------------------------------------------------------------------------------------------------
-Curve nurbs(Random& r) { return make_bspline(3, {0, 0, 0, 0, 0.2, 0.5, 0.5, 1.1, 1.1, 1.1, 2, 2, 2, 2}, random_points(r, 10), random_weights(r, 10)); }
+Curve nurbs(Random& r) {
+    return make_bspline(3, {0, 0, 0, 0, 0.2, 0.5, 0.5, 1.1, 1.1, 1.1, 2, 2, 2, 2}, random_points(r, 10),
+                        random_weights(r, 10));
+}
 Curve isocurve_of_spline(Random& r) {
-    return make_isocurve(make_bspline_patch(3, 2, {0, 0, 0, 0, 0.4, 1, 1, 1, 1}, {0, 0, 0, 1, 2, 2, 2}, random_net(r, 5, 4)), Along::u, 0.7);
+    return make_isocurve(
+        make_bspline_patch(3, 2, {0, 0, 0, 0, 0.4, 1, 1, 1, 1}, {0, 0, 0, 1, 2, 2, 2}, random_net(r, 5, 4)), Along::u,
+        0.7);
 }
 Curve arc(Random& r, double degrees) {
     const Point center = r.point(), a = r.vector() + Point{2, 0, 0};
@@ -58,15 +63,21 @@ Curve arc(Random& r, double degrees) {
 struct Helix {
     Point center;
     double begin = -1, end = 2.5;
-    template <class S> Vec3<S> operator()(const S& t) const { return {cos(t) + center.x, sin(t) + center.y, S(exp(t * 0.3)) + center.z}; }
-    Vec3<Polynomial> operator()(const Polynomial&) const { return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()}; }
+    template <class S> Vec3<S> operator()(const S& t) const {
+        return {cos(t) + center.x, sin(t) + center.y, S(exp(t * 0.3)) + center.z};
+    }
+    Vec3<Polynomial> operator()(const Polynomial&) const {
+        return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
+    }
 };
 
 Curve cubic_spline(Random& r, const Point& from, const Point& to) {
-    return make_interpolate({from, 0.6 * from + 0.4 * to + r.vector(0.3), 0.3 * from + 0.7 * to + r.vector(0.3), to}, SplineEnds::natural);
+    return make_interpolate({from, 0.6 * from + 0.4 * to + r.vector(0.3), 0.3 * from + 0.7 * to + r.vector(0.3), to},
+                            SplineEnds::natural);
 }
 Curve rational_cubic(Random& r, const Point& from, const Point& to) {
-    return make_bezier({from, 0.7 * from + 0.3 * to + r.vector(0.5), 0.3 * from + 0.7 * to + r.vector(0.5), to}, random_weights(r, 4));
+    return make_bezier({from, 0.7 * from + 0.3 * to + r.vector(0.5), 0.3 * from + 0.7 * to + r.vector(0.5), to},
+                       random_weights(r, 4));
 }
 
 // ---- surfaces on a rectangle ----------------------------------------------------------------------------------------
@@ -78,7 +89,8 @@ std::vector<Curve> border(const Grid<Point>& p, const Grid<double>& w = {}) {
         c0.push_back(p[i].front()), c1.push_back(p[i].back());
         if (!w.empty()) w0.push_back(w[i].front()), w1.push_back(w[i].back());
     }
-    return {make_bezier(c0, w0), make_bezier(p.back(), w.empty() ? w0 : w.back()), make_bezier(c1, w1), make_bezier(p.front(), w.empty() ? w0 : w.front())};
+    return {make_bezier(c0, w0), make_bezier(p.back(), w.empty() ? w0 : w.back()), make_bezier(c1, w1),
+            make_bezier(p.front(), w.empty() ? w0 : w.front())};
 }
 PatchSample bezier_patch(Random& r) {
     const auto net = random_net(r, 5, 4);
@@ -91,7 +103,8 @@ PatchSample rational_bezier_patch(Random& r) {
 }
 PatchSample sphere_octant(Random& r) {
     const double s = std::sqrt(0.5);
-    Grid<Point> p{{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+    Grid<Point> p{
+        {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
     const Grid<double> w{{1, s, 1}, {s, 0.5, s}, {1, s, 1}};
     for (auto& row : p)
         for (auto& x : row) x += r.offset();
@@ -102,11 +115,15 @@ PatchSample spline_patch(Random& r) {
     std::vector<Point> c0, c1;
     for (const auto& row : net) c0.push_back(row.front()), c1.push_back(row.back());
     const std::vector<double> ku{0, 0, 0, 0, 0.3, 0.7, 1, 1, 1, 1}, kv{-1, -1, -1, 0.5, 1, 2, 2, 2};
-    return {make_bspline_patch(3, 2, ku, kv, net), {make_bspline(3, ku, c0), make_bspline(2, kv, net.back()), make_bspline(3, ku, c1), make_bspline(2, kv, net.front())}};
+    return {make_bspline_patch(3, 2, ku, kv, net),
+            {make_bspline(3, ku, c0), make_bspline(2, kv, net.back()), make_bspline(3, ku, c1),
+             make_bspline(2, kv, net.front())}};
 }
 /// Knots of full multiplicity inside (C0 along u = 0.4), and a knot vector that is not clamped along v.
 PatchSample nurbs_patch(Random& r) {
-    return {make_bspline_patch(2, 3, {0, 0, 0, 0.4, 0.4, 1, 1, 1}, {0, 1, 2, 3, 4, 5, 6, 7, 8}, random_net(r, 5, 5), random_weights(r, 5, 5)), {}};
+    return {make_bspline_patch(2, 3, {0, 0, 0, 0.4, 0.4, 1, 1, 1}, {0, 1, 2, 3, 4, 5, 6, 7, 8}, random_net(r, 5, 5),
+                               random_weights(r, 5, 5)),
+            {}};
 }
 
 PatchSample coons_over(const Frame& e, const std::optional<Function>& blend = {}) {
@@ -137,10 +154,14 @@ HermiteNet hermite_net(Random& r) {
     return d;
 }
 HermiteData hermite_data(const HermiteNet& d) {
-    const auto curves = [](const std::array<std::vector<Point>, 4>& p) { return std::array<Curve, 4>{make_bezier(p[0]), make_bezier(p[1]), make_bezier(p[2]), make_bezier(p[3])}; };
+    const auto curves = [](const std::array<std::vector<Point>, 4>& p) {
+        return std::array<Curve, 4>{make_bezier(p[0]), make_bezier(p[1]), make_bezier(p[2]), make_bezier(p[3])};
+    };
     return {curves(d.f), curves(d.g)};
 }
-PatchSample hermite_over(const HermiteData& d, Twist twist) { return {make_coons_hermite(d, twist), {d.g[0], d.f[3], d.g[3], d.f[0]}}; }
+PatchSample hermite_over(const HermiteData& d, Twist twist) {
+    return {make_coons_hermite(d, twist), {d.g[0], d.f[3], d.g[3], d.f[0]}};
+}
 /// The inner points of the cross derivatives move: the twists no longer agree.
 HermiteData twisted_data(Random& r) {
     HermiteNet d = hermite_net(r);
@@ -165,7 +186,9 @@ Network spline_network(Random& r, int m, int n) {
     }
     return net;
 }
-PatchSample network_over(const Network& net, Twist twist) { return {make_network(net, twist), {net.b.front(), net.a.back(), net.b.back(), net.a.front()}}; }
+PatchSample network_over(const Network& net, Twist twist) {
+    return {make_network(net, twist), {net.b.front(), net.a.back(), net.b.back(), net.a.front()}};
+}
 
 // ---- surfaces on a triangle -----------------------------------------------------------------------------------------
 PatchSample bezier_triangle(Random& r, int degree, bool rational) {
@@ -191,8 +214,12 @@ PatchSample bezier_triangle(Random& r, int degree, bool rational) {
     for (int k = 0; k < 3; ++k) s.boundary.push_back(make_bezier(e[k], rational ? x[k] : std::vector<double>{}));
     return s;
 }
-PatchSample side_vertex(const std::array<Curve, 3>& e, const Function& h, SideVertexForm form) { return {make_side_vertex(e, h, form), {e[0], e[1], e[2]}}; }
-template <SideVertexForm form> PatchSample side_vertex(Random& r, std::vector<double> h) { return side_vertex(random_triangle(r), Function::polynomial(std::move(h)), form); }
+PatchSample side_vertex(const std::array<Curve, 3>& e, const Function& h, SideVertexForm form) {
+    return {make_side_vertex(e, h, form), {e[0], e[1], e[2]}};
+}
+template <SideVertexForm form> PatchSample side_vertex(Random& r, std::vector<double> h) {
+    return side_vertex(random_triangle(r), Function::polynomial(std::move(h)), form);
+}
 constexpr auto kDelta = SideVertexForm::delta, kSeed = SideVertexForm::seed;
 
 const std::vector<double> kT{0, 1}, kT2{0, 0, 1}, kT3{0, 0, 0, 1}, kQuartic{0, 0, 0, 2, -1}, kSmooth{0, 0, 3, -2};
@@ -206,19 +233,33 @@ const std::vector<CurveType>& curve_types() {
         {"bezier_point", [](Random& r) { return make_bezier({r.point()}); }},
         {"bezier_degree_12", [](Random& r) { return make_bezier(random_points(r, 13)); }},
         {"bezier_rational", [](Random& r) { return make_bezier(random_points(r, 5), random_weights(r, 5)); }},
-        {"bspline", [](Random& r) { return make_bspline(3, {0, 0, 0, 0, 0.3, 1, 1.7, 2, 2, 2, 2}, random_points(r, 7)); }},
-        {"bspline_multiple_knots", [](Random& r) { return make_bspline(3, {0, 0, 0, 0, 1, 1, 2, 2, 2, 3, 3, 3, 3}, random_points(r, 9)); }},
-        {"bspline_unclamped", [](Random& r) { return make_bspline(2, {0, 0.5, 1, 1.7, 3, 4, 4.5}, random_points(r, 4)); }},
+        {"bspline",
+         [](Random& r) {
+             return make_bspline(3, {0, 0, 0, 0, 0.3, 1, 1.7, 2, 2, 2, 2}, random_points(r, 7));
+         }},
+        {"bspline_multiple_knots",
+         [](Random& r) {
+             return make_bspline(3, {0, 0, 0, 0, 1, 1, 2, 2, 2, 3, 3, 3, 3}, random_points(r, 9));
+         }},
+        {"bspline_unclamped",
+         [](Random& r) {
+             return make_bspline(2, {0, 0.5, 1, 1.7, 3, 4, 4.5}, random_points(r, 4));
+         }},
         {"nurbs", nurbs},
-        {"hermite", [](Random& r) { return make_hermite(random_points(r, 4), {r.vector(), r.vector(), r.vector(), r.vector()}); }},
+        {"hermite",
+         [](Random& r) {
+             return make_hermite(random_points(r, 4), {r.vector(), r.vector(), r.vector(), r.vector()});
+         }},
         {"interpolate_natural", [](Random& r) { return make_interpolate(random_points(r, 6), SplineEnds::natural); }},
         {"interpolate_clamped", [](Random& r) { return make_interpolate(random_points(r, 5), SplineEnds::clamped); }},
-        {"interpolate_catmull_rom", [](Random& r) { return make_interpolate(random_points(r, 5), SplineEnds::catmull_rom); }},
+        {"interpolate_catmull_rom",
+         [](Random& r) { return make_interpolate(random_points(r, 5), SplineEnds::catmull_rom); }},
         {"arc_short", [](Random& r) { return arc(r, 47); }},
         {"arc_long", [](Random& r) { return arc(r, 165); }},
         {"formula", [](Random& r) { return make_curve(Helix{r.point()}); }},
         {"isocurve", [](Random& r) { return make_isocurve(bezier_patch(r).patch, Along::v, 0.3); }},
         {"isocurve_of_spline", isocurve_of_spline},
+        {"isocurve_with_a_corner", [](Random& r) { return make_isocurve(nurbs_patch(r).patch, Along::u, 3.5); }},
         {"reversed", [](Random& r) { return reversed(nurbs(r)); }},
         {"reversed_formula", [](Random& r) { return reversed(make_curve(Helix{r.point()})); }},
         {"reversed_isocurve", [](Random& r) { return reversed(isocurve_of_spline(r)); }},
@@ -226,15 +267,29 @@ const std::vector<CurveType>& curve_types() {
         {"segment_same_parameter", [](Random& r) { return segment(nurbs(r), 0.3, 1.6, false); }},
         {"segment_formula", [](Random& r) { return segment(make_curve(Helix{r.point()}), -0.5, 1.25); }},
         {"segment_isocurve", [](Random& r) { return segment(isocurve_of_spline(r), 0.1, 0.9); }},
-        {"transformed", [](Random& r) { Random h = r.here(); const Curve c = nurbs(h); return transformed(c, random_map(r)); }},
-        {"transformed_formula", [](Random& r) { Random h = r.here(); const Curve c = make_curve(Helix{h.point()}); return transformed(c, random_map(r)); }},
+        {"transformed",
+         [](Random& r) {
+             Random h = r.here();
+             const Curve c = nurbs(h);
+             return transformed(c, random_map(r));
+         }},
+        {"transformed_formula",
+         [](Random& r) {
+             Random h = r.here();
+             const Curve c = make_curve(Helix{h.point()});
+             return transformed(c, random_map(r));
+         }},
         {"reparametrized", [](Random& r) { return reparametrized(nurbs(r), -1, 4); }},
         {"reparametrized_formula", [](Random& r) { return reparametrized(make_curve(Helix{r.point()}), 0, 1); }},
-        {"combination", [](Random& r) {
-             const Curve a = make_interpolate(random_points(r, 4), SplineEnds::natural), b = make_bezier(random_points(r, 5)), c = make_hermite(random_points(r, 3), {r.vector(), r.vector(), r.vector()});
+        {"combination",
+         [](Random& r) {
+             const Curve a = make_interpolate(random_points(r, 4), SplineEnds::natural),
+                         b = make_bezier(random_points(r, 5)),
+                         c = make_hermite(random_points(r, 3), {r.vector(), r.vector(), r.vector()});
              return linear_combination({-0.5, 2, -0.5}, {a, reparametrized(b, 0, 3), reparametrized(c, 0, 3)});
          }},
-        {"combination_rational", [](Random& r) {
+        {"combination_rational",
+         [](Random& r) {
              const Curve a = nurbs(r), b = make_bezier(random_points(r, 5));
              return linear_combination({0.25, 0.75}, {a, reparametrized(b, 0, 2)});
          }},
@@ -250,7 +305,11 @@ const std::vector<PatchType>& patch_types() {
         {"bspline", spline_patch},
         {"nurbs_multiple_knots", nurbs_patch},
         {"coons", [](Random& r) { return coons_over(random_frame(r)); }},
-        {"coons_of_lines", [](Random& r) { return coons_over(random_frame(r, [](Random&, const Point& a, const Point& b) { return make_line(a, b); })); }},
+        {"coons_of_lines",
+         [](Random& r) {
+             return coons_over(
+                 random_frame(r, [](Random&, const Point& a, const Point& b) { return make_line(a, b); }));
+         }},
         {"coons_of_splines", [](Random& r) { return coons_over(random_frame(r, cubic_spline)); }},
         {"coons_of_rationals", [](Random& r) { return coons_over(random_frame(r, rational_cubic)); }},
         {"coons_cubic_blend", [](Random& r) { return coons_over(random_frame(r), cubic_blend()); }},
@@ -260,6 +319,14 @@ const std::vector<PatchType>& patch_types() {
         {"coons_hermite_zero", [](Random& r) { return hermite_over(twisted_data(r), Twist::zero); }},
         {"gregory", [](Random& r) { return hermite_over(twisted_data(r), Twist::gregory); }},
         {"network", [](Random& r) { return network_over(spline_network(r, 3, 2), Twist::average); }},
+        {"network_of_isocurves",
+         [](Random& r) {
+             const Patch p = bezier_patch(r).patch;
+             return network_over(
+                 {{make_isocurve(p, Along::v, 0), make_isocurve(p, Along::v, 0.5), make_isocurve(p, Along::v, 1)},
+                  {make_isocurve(p, Along::u, 0), make_isocurve(p, Along::u, 1)}},
+                 Twist::average);
+         }},
         {"network_zero", [](Random& r) { return network_over(spline_network(r, 1, 2), Twist::zero); }},
         {"network_gregory", [](Random& r) { return network_over(spline_network(r, 2, 3), Twist::gregory); }},
         {"bezier_triangle", [](Random& r) { return bezier_triangle(r, 4, false); }},
@@ -269,20 +336,23 @@ const std::vector<PatchType>& patch_types() {
         {"side_vertex_quartic", [](Random& r) { return side_vertex<kDelta>(r, kQuartic); }},
         {"side_vertex_smooth", [](Random& r) { return side_vertex<kDelta>(r, kSmooth); }},
         {"side_vertex_t3", [](Random& r) { return side_vertex<kDelta>(r, kT3); }},
-        {"side_vertex_rational", [](Random& r) { return side_vertex(random_triangle(r, rational_cubic), Function::polynomial(kT2), kDelta); }},
+        {"side_vertex_rational",
+         [](Random& r) { return side_vertex(random_triangle(r, rational_cubic), Function::polynomial(kT2), kDelta); }},
         {"side_vertex_seed_t", [](Random& r) { return side_vertex<kSeed>(r, kT); }, true, false},
         {"side_vertex_seed_t2", [](Random& r) { return side_vertex<kSeed>(r, kT2); }},
         {"side_vertex_seed_quartic", [](Random& r) { return side_vertex<kSeed>(r, kQuartic); }},
         {"side_vertex_seed_smooth", [](Random& r) { return side_vertex<kSeed>(r, kSmooth); }, false},
         {"side_vertex_seed_t3", [](Random& r) { return side_vertex<kSeed>(r, kT3); }, false},
-        {"transformed", [](Random& r) {
+        {"transformed",
+         [](Random& r) {
              Random h = r.here();
              PatchSample s = hermite_over(twisted_data(h), Twist::gregory);
              const Transform map = random_map(r);
              for (auto& c : s.boundary) c = transformed(c, map);
              return PatchSample{transformed(s.patch, map), s.boundary};
          }},
-        {"transformed_triangle", [](Random& r) {
+        {"transformed_triangle",
+         [](Random& r) {
              Random h = r.here();
              PatchSample s = side_vertex<kDelta>(h, kT2);
              const Transform map = random_map(r);
@@ -300,7 +370,8 @@ Vec2 random_parameter(Random& random, const Patch& patch, double margin) {
         return {margin + (1 - 3 * margin) * a, margin + (1 - 3 * margin) * b};
     }
     const Rect r = patch.rect();
-    return {r.u0 + (r.u1 - r.u0) * random.number(margin, 1 - margin), r.v0 + (r.v1 - r.v0) * random.number(margin, 1 - margin)};
+    return {r.u0 + (r.u1 - r.u0) * random.number(margin, 1 - margin),
+            r.v0 + (r.v1 - r.v0) * random.number(margin, 1 - margin)};
 }
 
 double size_of_sample(const Patch& patch, const Point& origin) {
@@ -314,7 +385,8 @@ double size_of_sample(const Patch& patch, const Point& origin) {
 }
 double size_of_sample(const Curve& curve, const Point& origin) {
     double size = 0;
-    for (int k = 0; k <= 20; ++k) size = std::max(size, distance(curve(curve.begin() + (curve.end() - curve.begin()) * k / 20), origin));
+    for (int k = 0; k <= 20; ++k)
+        size = std::max(size, distance(curve(curve.begin() + (curve.end() - curve.begin()) * k / 20), origin));
     return size;
 }
 
@@ -322,8 +394,10 @@ Curve random_cubic(Random& r, const Point& from, const Point& to) {
     return make_bezier({from, 0.7 * from + 0.3 * to + r.vector(0.5), 0.3 * from + 0.7 * to + r.vector(0.5), to});
 }
 Frame random_frame(Random& r, Curve (*between)(Random&, const Point&, const Point&)) {
-    const Point p00 = r.point({0, 0, 0}, 0.3), p10 = r.point({2, 0, 0}, 0.3), p01 = r.point({0, 2, 0}, 0.3), p11 = r.point({2, 2, 0}, 0.3);
-    const Curve c0 = between(r, p00, p10), c1 = between(r, p01, p11), d0 = between(r, p00, p01), d1 = between(r, p10, p11);
+    const Point p00 = r.point({0, 0, 0}, 0.3), p10 = r.point({2, 0, 0}, 0.3), p01 = r.point({0, 2, 0}, 0.3),
+                p11 = r.point({2, 2, 0}, 0.3);
+    const Curve c0 = between(r, p00, p10), c1 = between(r, p01, p11), d0 = between(r, p00, p01),
+                d1 = between(r, p10, p11);
     return {c0, c1, d0, d1};
 }
 std::array<Curve, 3> random_triangle(Random& r, Curve (*between)(Random&, const Point&, const Point&)) {

@@ -1,7 +1,7 @@
 // samples.h -- one row for each type of curve and of surface: what the law tests are instantiated over.
 //
-// A new type joins every law by one row in samples.cpp. A row makes a random instance from a Random; the same seed makes
-// the same instance, and a Random with an offset makes the same instance elsewhere in space.
+// A new type joins every law by one row in samples.cpp. A row makes a random instance from a Random; the same seed
+// makes the same instance, and a Random with an offset makes the same instance elsewhere in space.
 #pragma once
 #include <cstdint>
 #include <ostream>
@@ -76,7 +76,8 @@ struct Frame {
 };
 Frame random_frame(Random& random, Curve (*between)(Random&, const Point&, const Point&) = random_cubic);
 /// E1: B to C, E2: C to A, E3: A to B.
-std::array<Curve, 3> random_triangle(Random& random, Curve (*between)(Random&, const Point&, const Point&) = random_cubic);
+std::array<Curve, 3> random_triangle(Random& random,
+                                     Curve (*between)(Random&, const Point&, const Point&) = random_cubic);
 std::vector<std::vector<Point>> random_net(Random& random, int rows, int columns);
 
 }  // namespace isoparm::tests

@@ -1,5 +1,7 @@
 #include "curves/isocurve.h"
 
+#include <cmath>
+
 #include "error.h"
 
 namespace isoparm {
@@ -13,7 +15,7 @@ public:
     double end() const override { return along_ == Along::u ? patch_.rect().u1 : patch_.rect().v1; }
     std::vector<Break> breaks() const override {
         std::vector<Break> list;
-        for (double t : along_ == Along::u ? patch_.breaks_u() : patch_.breaks_v()) list.push_back({t, 1});
+        for (double t : along_ == Along::u ? patch_.breaks_u() : patch_.breaks_v()) list.push_back({t, continuity(t)});
         return list;
     }
     void taylor(double t, int order, Vec3<double>* out) const override {
@@ -34,6 +36,13 @@ public:
     void taylor(const Interval& t, int order, Vec3<Interval>* out) const override { store(enclose(t).over, order, out); }
 
 private:
+    /// A patch does not tell what jumps at its breaks: 1 if the slopes of both sides agree up to rounding, else 0.
+    int continuity(double t) const {
+        Vec3<double> low[2], high[2];
+        taylor(std::nextafter(t, begin()), 1, low);
+        taylor(t, 1, high);
+        return distance(low[1], high[1]) <= 1e-9 * (length(low[1]) + length(high[1])) ? 1 : 0;
+    }
     Enclosure enclose(const Interval& t) const { return patch_.enclose(along_ == Along::u ? Box{t, Interval(at_)} : Box{Interval(at_), t}); }
     template <class T, int N> void store(const Vec3<JetUV<T, N>>& j, int order, Vec3<T>* out) const {
         for (int k = 0; k <= order; ++k)

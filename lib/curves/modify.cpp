@@ -37,14 +37,7 @@ struct Combination {
     std::vector<double> weights;
     std::vector<Curve> curves;
     double begin = curves[0].begin(), end = curves[0].end();
-    std::vector<Break> breaks() const {
-        std::vector<Break> list;
-        for (const auto& c : curves)
-            for (const auto& b : c.breaks()) list.push_back(b);
-        std::sort(list.begin(), list.end(), [](const Break& x, const Break& y) { return x.t < y.t || (x.t == y.t && x.continuity < y.continuity); });
-        list.erase(std::unique(list.begin(), list.end(), [](const Break& x, const Break& y) { return x.t == y.t; }), list.end());
-        return list;
-    }
+    std::vector<Break> breaks() const { return breaks_of(curves); }
     template <class S> auto operator()(const S& t) const {
         auto sum = S(weights[0]) * curves[0](t);
         for (std::size_t k = 1; k < curves.size(); ++k) sum = sum + S(weights[k]) * curves[k](t);
@@ -127,13 +120,17 @@ Curve segment(const Curve& c, double from, double to, bool unit) {
         const double begin = unit ? 0 : from, end = unit ? 1 : to, slope = (to - from) / (end - begin);
         return make_curve(AffineParameter{c, begin, end, from - slope * begin, slope});
     }
+    // A break that differs from an end of the interval by rounding is that end: no piece of such a width is made.
+    const double tolerance = std::min(break_rounding * (c.end() - c.begin()), 1e-3 * (to - from));
     std::vector<BezierPiece> pieces;
     std::vector<int> continuity;
     for (std::size_t k = 0; k < b->pieces().size(); ++k) {
         BezierPiece p = b->pieces()[k];
-        if (p.end <= from || p.begin >= to) continue;
-        if (p.end > to) split(p, (to - p.begin) / (p.end - p.begin), &p, nullptr), p.end = to;
-        if (p.begin < from) split(p, (from - p.begin) / (p.end - p.begin), nullptr, &p), p.begin = from;
+        if (p.end <= from + tolerance || p.begin >= to - tolerance) continue;
+        if (p.end > to + tolerance) split(p, (to - p.begin) / (p.end - p.begin), &p, nullptr);
+        if (p.end > to - tolerance) p.end = to;
+        if (p.begin < from - tolerance) split(p, (from - p.begin) / (p.end - p.begin), nullptr, &p);
+        if (p.begin < from + tolerance) p.begin = from;
         if (!pieces.empty()) continuity.push_back(b->continuity()[k - 1]);
         pieces.push_back(std::move(p));
     }

@@ -42,6 +42,10 @@ template <class Basis> struct BooleanSum {
     std::array<std::array<Point, n>, n> corner;  // M_ij
     Part part = Part::sum;
 
+    /// Lines u = const and v = const where its curves have breaks.
+    std::vector<double> breaks_u() const { return lines(g); }
+    std::vector<double> breaks_v() const { return lines(f); }
+
     template <class U, class V> auto operator()(const U& u, const V& v) const {
         const auto across_u = basis(u);
         const auto across_v = basis(v);
@@ -63,6 +67,13 @@ template <class Basis> struct BooleanSum {
             case Part::P1P2: return p12;
             default: return p1 + p2 - p12;
         }
+    }
+
+private:
+    static std::vector<double> lines(const std::array<Curve, n>& curves) {
+        std::vector<double> list;
+        for (const Break& b : breaks_of(curves)) list.push_back(b.t);
+        return list;
     }
 };
 

@@ -9,6 +9,8 @@ namespace {
 template <class Basis> struct Coons {
     static constexpr Domain domain = Domain::quad;
     BooleanSum<Basis> sum;
+    std::vector<double> breaks_u() const { return sum.breaks_u(); }
+    std::vector<double> breaks_v() const { return sum.breaks_v(); }
     template <class U, class V> auto operator()(const U& u, const V& v) const { return sum(u, v); }
 };
 

@@ -24,6 +24,9 @@ struct HermitePatch {
     BooleanSum<HermiteBasis> sum;
     std::array<std::array<Point, 2>, 2> jump{};  // a - b at corner (i,j); 0 where the twists agree
 
+    std::vector<double> breaks_u() const { return sum.breaks_u(); }
+    std::vector<double> breaks_v() const { return sum.breaks_v(); }
+
     template <class U, class V> auto operator()(const U& u, const V& v) const {
         auto x = sum(u, v);
         if (sum.part == Part::P1 || sum.part == Part::P2) return x;

@@ -1,5 +1,8 @@
 #include "patches/network.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "curves/modify.h"
 #include "patch_model.h"
 #include "patches/compatibility.h"
@@ -12,6 +15,7 @@ struct NetworkPatch {
     static constexpr Domain domain = Domain::quad;
     int m, n;
     std::vector<HermitePatch> cells;  // cell (i,j) = cells[i * n + j], over [i,i+1] x [j,j+1]
+    std::vector<double> lines_u, lines_v;  // the borders of the cells, and breaks of the curves inside them
     std::vector<double> inner_u = inner(m), inner_v = inner(n);
 
     static std::vector<double> inner(int count) {
@@ -19,9 +23,16 @@ struct NetworkPatch {
         for (int k = 1; k < count; ++k) list.push_back(k);
         return list;
     }
+    static std::vector<double> with_breaks(int count, const std::vector<Curve>& curves) {
+        std::vector<double> list = inner(count);
+        for (const Break& b : breaks_of(curves))
+            if (std::abs(b.t - std::round(b.t)) > break_rounding * count) list.push_back(b.t);
+        std::sort(list.begin(), list.end());
+        return list;
+    }
     Rect rect() const { return {0, double(m), 0, double(n)}; }
-    std::vector<double> breaks_u() const { return inner_u; }
-    std::vector<double> breaks_v() const { return inner_v; }
+    std::vector<double> breaks_u() const { return lines_u; }
+    std::vector<double> breaks_v() const { return lines_v; }
 
     template <class U, class V> auto operator()(const U& u, const V& v) const {
         const std::size_t i = cell_of(inner_u, u), j = cell_of(inner_v, v);
@@ -56,7 +67,7 @@ Patch make_network(const Network& network, Twist twist) {
                           b[j](double(i)), size);
 
     const auto A = cross_derivatives(a), B = cross_derivatives(b);
-    NetworkPatch patch{int(m), int(n), {}};
+    NetworkPatch patch{int(m), int(n), {}, NetworkPatch::with_breaks(int(m), b), NetworkPatch::with_breaks(int(n), a)};
     for (std::size_t i = 0; i < m; ++i)
         for (std::size_t j = 0; j < n; ++j) {
             const auto along_v = [&](const Curve& c) { return segment(c, double(j), double(j + 1)); };

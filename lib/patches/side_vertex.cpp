@@ -12,6 +12,7 @@ struct Bulge {
     const Curve& edge;
     const Point &from, &to;
     template <class S> auto operator()(const S& t) const { return edge(t) - ((1.0 - t) * from + t * to); }
+    double size() const { return length(from) + length(to); }  // of the terms, whose difference may vanish
 };
 
 struct SideVertex {

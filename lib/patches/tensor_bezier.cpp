@@ -66,12 +66,16 @@ struct TensorBezier {
 
     template <class U, class V> auto operator()(const U& u, const V& v) const {
         const Cell& cell = cells[cell_of(inner_u, u) * (inner_v.size() + 1) + cell_of(inner_v, v)];
-        const U s = (u - cell.u0) / (cell.u1 - cell.u0);
-        const V t = (v - cell.v0) / (cell.v1 - cell.v0);
-        return evaluate(cell, s, t);
+        return evaluate(cell, local(u, cell.u0, cell.u1), local(v, cell.v0, cell.v1));
     }
 
 private:
+    /// From [from, to] to [0, 1]. Over intervals the width is one too: to - from is rounded.
+    template <class S> static S local(const S& t, double from, double to) {
+        using T = std::decay_t<decltype(base(t))>;
+        return (t - T(from)) / (T(to) - T(from));
+    }
+    static Polynomial local(const Polynomial& t, double from, double to) { return (t - Polynomial(from)) / Polynomial(Interval(to) - Interval(from)); }
     template <class U, class V> static auto evaluate(const Cell& cell, const U& s, const V& t) {
         std::vector<U> bu;
         std::vector<V> bv;

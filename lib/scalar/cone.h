@@ -106,19 +106,24 @@ template <class HF, class G, class A, class B> auto cone(const HF& H, const G& g
         if constexpr (std::is_same_v<T, double>)
             if (r.c[0] != 0) return result;
         constexpr int M = 2;
+        const Interval slope = H(variable_u<Interval, 1>(Interval(0))).c[1];
+        const bool flat = slope.lo == 0 && slope.hi == 0;  // K/r is bounded
+        double size = 0;                                   // of g: what its rounding is relative to
+        if constexpr (requires { g.size(); }) size = g.size();
         const auto closed = [&](const T& radius, const T& at, auto& out) {
             const auto h = H(variable_u<T, M>(radius));
             const auto gamma = g(variable_u<T, M>(at));
-            const bool flat = H(variable_u<double, 1>(0.0)).c[1] == 0;
             const T hs[3] = {h.c[0], h.c[1], T(2.0) * h.c[2]};
             T k[3] = {h.c[1], h.c[2], h.c[2]};
-            if (!flat) {
-                if constexpr (std::is_same_v<T, Interval>) k[2] = Interval::all();
-                else k[2] = std::numeric_limits<double>::infinity();
-            }
             for (int i = 0; i < C::count; ++i) {
                 const auto& gi = Components<std::decay_t<decltype(gamma)>>::get(gamma, i);
                 const T gs[3] = {gi.c[0], gi.c[1], T(2.0) * gi.c[2]};
+                if constexpr (std::is_same_v<T, Interval>) {
+                    if (!flat) k[2] = Interval::all();
+                } else {
+                    size = std::max(size, std::fabs(gs[0]));
+                    if (!flat) k[2] = std::fabs(gs[2]) <= 1e-12 * size ? 0 : std::numeric_limits<double>::infinity();
+                }
                 closed_form(a, b, at, hs, k, gs, C::get(out, i));
             }
         };
@@ -139,14 +144,14 @@ template <class HF, class G, class A, class B> auto cone(const HF& H, const G& g
             for (int n = 0; n < samples; ++n) closed(0.0, n / (samples - 1.0), at[n]);
             for (int i = 0; i < C::count; ++i)
                 for (int k = 0; k < R::size; ++k) {
-                    double low = C::get(at[0], i).c[k], high = low, size = 0;
+                    double low = C::get(at[0], i).c[k], high = low;
                     bool exists = true;
                     for (int n = 0; n < samples; ++n) {
                         const double x = C::get(at[n], i).c[k];
                         exists = exists && std::isfinite(x);
-                        low = std::min(low, x), high = std::max(high, x), size = std::max(size, std::fabs(x));
+                        low = std::min(low, x), high = std::max(high, x);
                     }
-                    exists = exists && high - low <= 1e-12 * size;
+                    exists = exists && high - low <= 1e-12 * std::max({size, std::fabs(low), std::fabs(high)});
                     C::get(result, i).c[k] = k == 0 ? 0 : exists ? 0.5 * (low + high) : std::numeric_limits<double>::quiet_NaN();
                 }
         }

@@ -62,55 +62,64 @@ inline Interval log(const Interval& a) {
     if (!(a.lo > 0)) return Interval::all();
     return checked(below(std::log(a.lo)), above(std::log(a.hi)));
 }
-/// a^p, p not an integer, of the part of a that is not negative.
-inline Interval pow(const Interval& a, double p) {
+/// a^p, p not an integer, of the part of a that is not negative. p is an interval too, because the exponents of
+/// derivatives, p - 1 and so on, are rounded; p log a takes its extrema at the corners.
+inline Interval pow(const Interval& a, const Interval& p) {
     using namespace rounding;
-    if (a.hi < 0 || (p < 0 && a.lo <= 0)) return Interval::all();
-    const double at_lo = std::pow(std::max(a.lo, 0.0), p), at_hi = std::pow(a.hi, p);
-    return checked(std::max(0.0, below(std::min(at_lo, at_hi))), above(std::max(at_lo, at_hi)));
+    if (a.hi < 0 || (p.lo < 0 && a.lo <= 0)) return Interval::all();
+    const double x = std::max(a.lo, 0.0);
+    const auto [low, high] = std::minmax({std::pow(x, p.lo), std::pow(x, p.hi), std::pow(a.hi, p.lo), std::pow(a.hi, p.hi)});
+    return checked(std::max(0.0, below(low)), above(high));
 }
 
 // ---- jets -----------------------------------------------------------------------------------------------------------
+/// compose() with the coefficients that a jet of order N <= 3 needs.
+template <class T, int I, int J, int N> Jet<T, I, J, N> compose_series(const T (&f)[4], const Jet<T, I, J, N>& x) {
+    T needed[N + 1];
+    for (int k = 0; k <= N; ++k) needed[k] = f[k];
+    return compose(needed, x);
+}
 template <class T, int I, int J, int N> Jet<T, I, J, N> sin(const Jet<T, I, J, N>& x) {
     using std::cos, std::sin;
     const T s = sin(x.c[0]), c = cos(x.c[0]);
     const T f[] = {s, c, -s / T(2.0), -c / T(6.0)};
-    return compose(f, x);
+    return compose_series(f, x);
 }
 template <class T, int I, int J, int N> Jet<T, I, J, N> cos(const Jet<T, I, J, N>& x) {
     using std::cos, std::sin;
     const T s = sin(x.c[0]), c = cos(x.c[0]);
     const T f[] = {c, -s, -c / T(2.0), s / T(6.0)};
-    return compose(f, x);
+    return compose_series(f, x);
 }
 template <class T, int I, int J, int N> Jet<T, I, J, N> exp(const Jet<T, I, J, N>& x) {
     using std::exp;
     const T e = exp(x.c[0]);
     const T f[] = {e, e, e / T(2.0), e / T(6.0)};
-    return compose(f, x);
+    return compose_series(f, x);
 }
 template <class T, int I, int J, int N> Jet<T, I, J, N> log(const Jet<T, I, J, N>& x) {
     using std::log;
     const T r = T(1.0) / x.c[0];
     const T f[] = {log(x.c[0]), r, -(r * r) / T(2.0), r * r * r / T(3.0)};
-    return compose(f, x);
+    return compose_series(f, x);
 }
 template <class T, int I, int J, int N> Jet<T, I, J, N> sqrt(const Jet<T, I, J, N>& x) {
     using std::sqrt;
     const T s = sqrt(x.c[0]);
     const T r = T(0.5) / s, r3 = r * r * r;
     const T f[] = {s, r, -r3, r3 * r * r * T(2.0)};  // 1/(2s), -1/(8s^3), 1/(16s^5)
-    return compose(f, x);
+    return compose_series(f, x);
 }
 /// x^p, p not an integer, x >= 0.
 template <class T, int I, int J, int N> Jet<T, I, J, N> pow(const Jet<T, I, J, N>& x, double p) {
     using std::pow;
     T f[4], factor(1.0);
     for (int k = 0; k <= std::min(N, 3); ++k) {
-        f[k] = factor * pow(x.c[0], p - k);
+        if constexpr (std::is_same_v<T, Interval>) f[k] = factor * pow(x.c[0], Interval(p) - Interval(double(k)));
+        else f[k] = factor * pow(x.c[0], p - k);
         factor = factor * (T(p) - T(double(k))) / T(double(k + 1));
     }
-    return compose(f, x);
+    return compose_series(f, x);
 }
 
 /// x^n by repeated squaring: polynomials stay polynomials.

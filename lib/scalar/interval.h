@@ -51,13 +51,17 @@ inline Interval checked(double lo, double hi) {
 }
 
 inline Interval operator-(const Interval& a) { return {-a.hi, -a.lo}; }
-// A sum in the subnormal range is exact and a sum that is 0 is exact, so down(0) = 0 is right here.
+// A sum in the subnormal range is exact and a sum that is 0 is exact, so down(0) = 0 is right here. Beyond the largest
+// number an outer end becomes infinite, which is right, and an inner one NaN, which fails the comparison.
 inline Interval operator+(const Interval& a, const Interval& b) {
-    return checked(rounding::down(a.lo + b.lo), rounding::up(a.hi + b.hi));
+    const double lo = rounding::down(a.lo + b.lo), hi = rounding::up(a.hi + b.hi);
+    return lo <= hi ? Interval(lo, hi) : Interval::all();
 }
 inline Interval operator-(const Interval& a, const Interval& b) { return a + (-b); }
 
-inline Interval operator*(const Interval& a, const Interval& b) {
+namespace interval_detail {
+/// Products with a factor that is 0 or not bounded, or that leave the range of doubles.
+inline Interval product_with_care(const Interval& a, const Interval& b) {
     using namespace rounding;
     if ((a.lo == 0 && a.hi == 0 && b.bounded()) || (b.lo == 0 && b.hi == 0 && a.bounded())) return {0, 0};
     const double p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
@@ -69,6 +73,15 @@ inline Interval operator*(const Interval& a, const Interval& b) {
     lo = lo == 0 ? (same ? 0 : -kTiny) : down(lo);
     hi = hi == 0 ? (opposite ? 0 : kTiny) : up(hi);
     return checked(lo, hi);
+}
+}  // namespace interval_detail
+
+inline Interval operator*(const Interval& a, const Interval& b) {
+    const double p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
+    const double lo = std::min(std::min(p, q), std::min(r, s)), hi = std::max(std::max(p, q), std::max(r, s));
+    const double sum = (p + q) + (r + s);  // finite only if all products are
+    if (lo == 0 || hi == 0 || !(sum - sum == 0)) return interval_detail::product_with_care(a, b);
+    return {rounding::down(lo), rounding::up(hi)};
 }
 inline Interval reciprocal(const Interval& b) {
     if (b.lo <= 0 && b.hi >= 0) return Interval::all();

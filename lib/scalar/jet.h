@@ -136,16 +136,22 @@ template <class T, int I, int J, int N> Jet<T, I, J, N> operator/(Jet<T, I, J, N
     return a;
 }
 
-/// The products a.c[p] * b.c[q] that add up to r.c[k], as a table known to the compiler.
-template <class A, class B, class R> struct ProductTable {
+/// The products a.c[p] * b.c[q] that add up to r.c[k], as a table known to the compiler. MinA, MinB: total degrees below
+/// which a and b are known to vanish.
+template <class A, class B, class R, int MinA = 0, int MinB = 0> struct ProductTable {
     struct Term {
         int k, p, q;
         bool first;
     };
+    static constexpr bool counts(int p, int q) {
+        const auto [i, j] = A::powers[p];
+        const auto [k, l] = B::powers[q];
+        return i + j >= MinA && k + l >= MinB && R::has(i + k, j + l);
+    }
     static constexpr int count = [] {
         int n = 0;
-        for (const auto& a : A::powers)
-            for (const auto& b : B::powers) n += R::has(a.first + b.first, a.second + b.second);
+        for (int p = 0; p < A::size; ++p)
+            for (int q = 0; q < B::size; ++q) n += counts(p, q);
         return n;
     }();
     static constexpr std::array<Term, count> terms = [] {
@@ -155,7 +161,7 @@ template <class A, class B, class R> struct ProductTable {
             bool first = true;
             for (int p = 0; p < A::size; ++p)
                 for (int q = 0; q < B::size; ++q)
-                    if (A::powers[p].first + B::powers[q].first == R::powers[k].first &&
+                    if (counts(p, q) && A::powers[p].first + B::powers[q].first == R::powers[k].first &&
                         A::powers[p].second + B::powers[q].second == R::powers[k].second) {
                         t[n++] = {k, p, q, first};
                         first = false;
@@ -166,10 +172,10 @@ template <class A, class B, class R> struct ProductTable {
 };
 
 /// Cauchy product, truncated at total degree N.
-template <class T, int I1, int J1, int I2, int J2, int N>
-auto operator*(const Jet<T, I1, J1, N>& a, const Jet<T, I2, J2, N>& b) {
+template <int MinA = 0, int MinB = 0, class T, int I1, int J1, int I2, int J2, int N>
+auto product(const Jet<T, I1, J1, N>& a, const Jet<T, I2, J2, N>& b) {
     using R = Jet<T, std::max(I1, I2), std::max(J1, J2), N>;
-    using Table = ProductTable<Jet<T, I1, J1, N>, Jet<T, I2, J2, N>, R>;
+    using Table = ProductTable<Jet<T, I1, J1, N>, Jet<T, I2, J2, N>, R, MinA, MinB>;
     R r;
     [&]<std::size_t... M>(std::index_sequence<M...>) {
         ([&] {
@@ -180,6 +186,8 @@ auto operator*(const Jet<T, I1, J1, N>& a, const Jet<T, I2, J2, N>& b) {
     }(std::make_index_sequence<Table::count>{});
     return r;
 }
+template <class T, int I1, int J1, int I2, int J2, int N>
+auto operator*(const Jet<T, I1, J1, N>& a, const Jet<T, I2, J2, N>& b) { return product(a, b); }
 
 /// Quotient by the recurrence q_k = (a_k - sum q_l b_{k-l}) / b_0.
 template <class T, int I1, int J1, int I2, int J2, int N>
@@ -213,21 +221,39 @@ template <class T, int I, int J, int N> Jet<T, I, J, N> square(const Jet<T, I, J
 }
 
 // ---- composition ----------------------------------------------------------------------------------------------------
-/// f(x) from the Taylor coefficients f_0..f_N of f at the constant term of x; V is a scalar or a Vec3 of scalars.
-template <class T, int I, int J, int N> auto compose(const T* f, const Jet<T, I, J, N>& x) {
-    Jet<T, I, J, N> step = x, r(f[N]);
-    step.c[0] = T(0.0);
-    for (int k = N - 1; k >= 0; --k) {
-        r = r * step;
-        r.c[0] = f[k];
+/// f(x) from the Taylor coefficients f_0..f_N of f at the constant term of x: sum f_k (x - x_0)^k, for `count` functions
+/// that share the powers. (x - x_0)^k vanishes below degree k.
+template <int Count, class T, int I, int J, int N> void compose(const T (*f)[N + 1], const Jet<T, I, J, N>& x, Jet<T, I, J, N>* out) {
+    using X = Jet<T, I, J, N>;
+    for (int n = 0; n < Count; ++n) out[n].c[0] = f[n][0];
+    const auto add = [&]<int K>(std::integral_constant<int, K>, const X& power) {
+        for (int k = 0; k < X::size; ++k) {
+            if (X::powers[k].first + X::powers[k].second < K) continue;
+            for (int n = 0; n < Count; ++n) out[n].c[k] = K == 1 ? f[n][1] * power.c[k] : out[n].c[k] + f[n][K] * power.c[k];
+        }
+    };
+    if constexpr (N >= 1) add(std::integral_constant<int, 1>{}, x);
+    if constexpr (N >= 2) {
+        const X second = product<1, 1>(x, x);
+        add(std::integral_constant<int, 2>{}, second);
+        if constexpr (N >= 3) add(std::integral_constant<int, 3>{}, product<1, 2>(x, second));
     }
+    static_assert(N <= 3);
+}
+template <class T, int I, int J, int N> Jet<T, I, J, N> compose(const T* f, const Jet<T, I, J, N>& x) {
+    T a[1][N + 1];
+    std::copy(f, f + N + 1, a[0]);
+    Jet<T, I, J, N> r;
+    compose<1>(a, x, &r);
     return r;
 }
 template <class T, int I, int J, int N> auto compose(const Vec3<T>* f, const Jet<T, I, J, N>& x) {
     T a[3][N + 1];
     for (int k = 0; k <= N; ++k)
         for (int i = 0; i < 3; ++i) a[i][k] = f[k][i];
-    return Vec3<Jet<T, I, J, N>>{compose(a[0], x), compose(a[1], x), compose(a[2], x)};
+    Jet<T, I, J, N> r[3];
+    compose<3>(a, x, r);
+    return Vec3<Jet<T, I, J, N>>{r[0], r[1], r[2]};
 }
 
 }  // namespace isoparm

@@ -35,7 +35,7 @@ Vec2 parse_at(const std::string& text, const Options& options) {
 void check_inside(const Patch& patch, const Vec2& at, const std::string& surface) {
     const Rect r = patch.rect();
     const bool triangle = patch.domain() == Domain::triangle;
-    const bool inside = triangle ? at.x >= 0 && at.y >= 0 && at.x + at.y <= 1 : at.x >= r.u0 && at.x <= r.u1 && at.y >= r.v0 && at.y <= r.v1;
+    const bool inside = triangle ? at.x >= 0 && at.y >= 0 && at.x + at.y <= 1 + 0x1p-52 : at.x >= r.u0 && at.x <= r.u1 && at.y >= r.v0 && at.y <= r.v1;
     if (inside) return;
     const std::string domain = triangle ? "u >= 0, v >= 0, u + v <= 1"
                                         : to_text(r.u0) + " <= u <= " + to_text(r.u1) + ", " + to_text(r.v0) + " <= v <= " + to_text(r.v1);

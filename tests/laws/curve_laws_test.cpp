@@ -19,7 +19,9 @@ protected:
             law(c, random);
         }
     }
-    static double parameter(const Curve& c, Random& r, double margin = 0) { return c.begin() + (c.end() - c.begin()) * r.number(margin, 1 - margin); }
+    static double parameter(const Curve& c, Random& r, double margin = 0) {
+        return c.begin() + (c.end() - c.begin()) * r.number(margin, 1 - margin);
+    }
     /// Largest Taylor coefficient of each order: what rounding is relative to.
     static std::array<double, 4> sizes(const Curve& c) {
         std::array<double, 4> s{};
@@ -49,7 +51,8 @@ TEST_P(CurveLaw, JetsAgreeWithCentralDifferences) {
             Point low[4], at[4], high[4];
             c.taylor(t - h, 3, low), c.taylor(t, 3, at), c.taylor(t + h, 3, high);
             for (int k = 0; k < 3; ++k)  // out[k+1] = out[k]' / (k+1)
-                EXPECT_LE(distance((high[k] - low[k]) / (2 * h * (k + 1)), at[k + 1]), 1e-6 * size[k + 1]) << "order " << k + 1 << " at " << t;
+                EXPECT_LE(distance((high[k] - low[k]) / (2 * h * (k + 1)), at[k + 1]), 1e-6 * size[k + 1])
+                    << "order " << k + 1 << " at " << t;
         }
     });
 }
@@ -76,14 +79,17 @@ TEST_P(CurveLaw, PacksEqualScalarsBitForBit) {
             for (int order = 0; order <= 3; ++order) {
                 const double middle = parameter(c, r);
                 Pack t;
-                for (int i = 0; i < Pack::lanes; ++i) t.set(i, std::clamp(middle + spread * r.number(-1, 1), c.begin(), c.end()));
+                for (int i = 0; i < Pack::lanes; ++i)
+                    t.set(i, std::clamp(middle + spread * r.number(-1, 1), c.begin(), c.end()));
                 Vec3<Pack> packed[4];
                 c.taylor(t, order, packed);
                 for (int i = 0; i < Pack::lanes; ++i) {
                     Point x[4];
                     c.taylor(t[i], order, x);
                     for (int k = 0; k <= order; ++k)
-                        for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(packed[k][axis][i], x[k][axis]) << "order " << k << " of " << order << " at " << t[i];
+                        for (int axis = 0; axis < 3; ++axis)
+                            EXPECT_EQ(packed[k][axis][i], x[k][axis])
+                                << "order " << k << " of " << order << " at " << t[i];
                 }
             }
     });
@@ -96,8 +102,10 @@ TEST_P(CurveLaw, IntervalsEncloseEveryParameter) {
         for (int n = 0; n < 40; ++n) {
             const double reach = width * std::pow(10, -r.number(0, 9));
             double a = parameter(c, r);
-            if (const auto breaks = c.breaks(); n % 4 == 0 && !breaks.empty()) a = breaks[r.integer(0, int(breaks.size()) - 1)].t;  // touch one
-            const double lo = std::max(c.begin(), a - (n % 3 ? reach * r.number() : 0)), hi = std::min(c.end(), a + (n % 5 ? reach * r.number() : 0));
+            if (const auto breaks = c.breaks(); n % 4 == 0 && !breaks.empty())
+                a = breaks[r.integer(0, int(breaks.size()) - 1)].t;  // touch one
+            const double lo = std::max(c.begin(), a - (n % 3 ? reach * r.number() : 0)),
+                         hi = std::min(c.end(), a + (n % 5 ? reach * r.number() : 0));
             Vec3<Interval> box[4];
             c.taylor(Interval(lo, hi), 3, box);
             for (int s = 0; s < 8; ++s) {
@@ -108,10 +116,40 @@ TEST_P(CurveLaw, IntervalsEncloseEveryParameter) {
                 for (int k = 0; k < 4; ++k)
                     for (int axis = 0; axis < 3; ++axis) {
                         const double slack = 1e-13 * size[k];
-                        EXPECT_GE(x[k][axis], box[k][axis].lo - slack) << "order " << k << " at " << t << " in [" << lo << ", " << hi << "]";
-                        EXPECT_LE(x[k][axis], box[k][axis].hi + slack) << "order " << k << " at " << t << " in [" << lo << ", " << hi << "]";
+                        EXPECT_GE(x[k][axis], box[k][axis].lo - slack)
+                            << "order " << k << " at " << t << " in [" << lo << ", " << hi << "]";
+                        EXPECT_LE(x[k][axis], box[k][axis].hi + slack)
+                            << "order " << k << " at " << t << " in [" << lo << ", " << hi << "]";
                     }
             }
+        }
+    });
+}
+
+TEST_P(CurveLaw, IntervalsHoldByTheMeanValueTheorem) {
+    // A chord of each derivative is held by the bound of the next one, also across breaks: there it may be any number.
+    each([](const Curve& c, Random& r) {
+        const double width = c.end() - c.begin();
+        const auto size = sizes(c);
+        const auto breaks = c.breaks();
+        for (int n = 0; n < 40; ++n) {
+            const double reach = width * std::pow(10, -r.number(0, 6));
+            const double a = breaks.empty() || n % 2 ? parameter(c, r) : breaks[r.integer(0, int(breaks.size()) - 1)].t;
+            const double lo = std::max(c.begin(), a - reach * r.number()),
+                         hi = std::min(c.end(), a + reach * r.number());
+            Vec3<Interval> box[4];
+            c.taylor(Interval(lo, hi), 3, box);
+            Point x[4], y[4];
+            const double s = r.number(lo, hi), t = r.number(lo, hi);
+            if (s == t) continue;
+            c.taylor(s, 3, x), c.taylor(t, 3, y);
+            for (int k = 1; k < 4; ++k)
+                for (int axis = 0; axis < 3; ++axis) {
+                    const double chord = (y[k - 1][axis] - x[k - 1][axis]) / ((t - s) * k);
+                    const double slack = 1e-12 * size[k - 1] / std::abs(t - s);
+                    EXPECT_TRUE(chord >= box[k][axis].lo - slack && chord <= box[k][axis].hi + slack)
+                        << "order " << k << " from " << s << " to " << t;
+                }
         }
     });
 }
@@ -127,7 +165,8 @@ TEST_P(CurveLaw, IntervalsAwayFromBreaksAreTight) {
             c.taylor(Interval(t - h, t + h), 3, box);
             for (int k = 0; k < 3; ++k)  // as wide as the next derivative makes it, and a little
                 for (int axis = 0; axis < 3; ++axis)
-                    EXPECT_LE(box[k][axis].hi - box[k][axis].lo, 40 * h * (k + 1) * size[k + 1] + 1e-12 * size[k]) << "order " << k << " at " << t;
+                    EXPECT_LE(box[k][axis].hi - box[k][axis].lo, 40 * h * (k + 1) * size[k + 1] + 1e-12 * size[k])
+                        << "order " << k << " at " << t;
         }
     });
 }
@@ -152,7 +191,9 @@ TEST_P(CurveLaw, ExactPolynomialsAreTheCurve) {
                 for (int axis = 0; axis < 3; ++axis) {
                     JetUV<Interval, 3> jet;
                     exact[axis].jets<3>(mid(range), 0, Interval(t), Interval(0), nullptr, &jet);
-                    for (int k = 0; k < 4; ++k) EXPECT_NEAR(mid(jet.coefficient(k, 0)), x[k][axis], 1e-12 * size[k]) << "order " << k << " at " << t;
+                    for (int k = 0; k < 4; ++k)
+                        EXPECT_NEAR(mid(jet.coefficient(k, 0)), x[k][axis], 1e-12 * size[k])
+                            << "order " << k << " at " << t;
                 }
             }
         }
@@ -170,7 +211,8 @@ TEST_P(CurveLaw, BreaksTellWhatJumps) {
             const double h = 1e-9 * (c.end() - c.begin());
             Point low[4], high[4];
             c.taylor(b.t - h, 3, low), c.taylor(b.t + h, 3, high);
-            for (int k = 0; k <= std::min(b.continuity, 2); ++k) EXPECT_LE(distance(low[k], high[k]), 1e-6 * (size[k] + size[k + 1])) << "order " << k << " at " << b.t;
+            for (int k = 0; k <= std::min(b.continuity, 2); ++k)
+                EXPECT_LE(distance(low[k], high[k]), 1e-6 * (size[k] + size[k + 1])) << "order " << k << " at " << b.t;
         }
     });
 }
@@ -192,10 +234,13 @@ TEST_P(CurveLaw, MovesWithItsData) {
 
 TEST_P(CurveLaw, ReversedSegmentTransformedReparametrizedAgree) {
     each([](const Curve& c, Random& r) {
-        const Transform map = Transform::rotate({1, 1, 0}, 30) * Transform::scale({2, 1, -1}) * Transform::translate({1, 2, 3});
-        const double a = parameter(c, r, 0.1), from = std::min(a, c.end() - 0.05 * (c.end() - c.begin())), to = r.number(from + 0.04 * (c.end() - c.begin()), c.end());
-        const Curve back = reversed(c), twice = reversed(back), part = segment(c, from, to), same = segment(c, from, to, false), moved = transformed(c, map),
-                    other = reparametrized(c, 2, 5), doubled = linear_combination({2, -1}, {c, c});
+        const Transform map =
+            Transform::rotate({1, 1, 0}, 30) * Transform::scale({2, 1, -1}) * Transform::translate({1, 2, 3});
+        const double a = parameter(c, r, 0.1), from = std::min(a, c.end() - 0.05 * (c.end() - c.begin())),
+                     to = r.number(from + 0.04 * (c.end() - c.begin()), c.end());
+        const Curve back = reversed(c), twice = reversed(back), part = segment(c, from, to),
+                    same = segment(c, from, to, false), moved = transformed(c, map), other = reparametrized(c, 2, 5),
+                    doubled = linear_combination({2, -1}, {c, c});
         EXPECT_EQ(part.begin(), 0);
         EXPECT_EQ(part.end(), 1);
         EXPECT_EQ(same.begin(), from);
@@ -220,7 +265,8 @@ TEST_P(CurveLaw, ReversedSegmentTransformedReparametrizedAgree) {
             if (near_break(c, t, 1e-9) || near_break(c, q, 1e-9)) continue;
             EXPECT_LE(length(back.derivative(c.end() - (t - c.begin())) + c.derivative(t)), 1e-11 * size[1]);
             EXPECT_LE(distance(moved.derivative(t), map.vector(c.derivative(t))), 1e-12 * 6 * size[1]);
-            EXPECT_LE(distance(part.derivative(s), (to - from) * c.derivative(q)), 1e-12 * size[1] * (c.end() - c.begin()));
+            EXPECT_LE(distance(part.derivative(s), (to - from) * c.derivative(q)),
+                      1e-12 * size[1] * (c.end() - c.begin()));
         }
     });
 }

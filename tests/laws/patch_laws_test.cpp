@@ -25,7 +25,9 @@ protected:
 bool near(const std::vector<double>& breaks, double t, double h) {
     return std::any_of(breaks.begin(), breaks.end(), [&](double b) { return std::abs(t - b) <= 2 * h; });
 }
-Point coefficient(const PointJet& x, int i, int j) { return {x.x.coefficient(i, j), x.y.coefficient(i, j), x.z.coefficient(i, j)}; }
+Point coefficient(const PointJet& x, int i, int j) {
+    return {x.x.coefficient(i, j), x.y.coefficient(i, j), x.z.coefficient(i, j)};
+}
 
 TEST_P(PatchLaw, InterpolatesItsBoundary) {
     each([](const PatchSample& s, Random& r) {
@@ -35,7 +37,8 @@ TEST_P(PatchLaw, InterpolatesItsBoundary) {
             for (int n = 0; n <= 20; ++n) {
                 const double t = n < 2 ? n : r.number();
                 const Vec2 p = s.patch.edge_point(int(k), t);
-                EXPECT_LE(distance(s.patch.point(p.x, p.y), c(c.begin() + t * (c.end() - c.begin()))), 2e-14 * size) << s.patch.edge_name(int(k)) << " at " << t;
+                EXPECT_LE(distance(s.patch.point(p.x, p.y), c(c.begin() + t * (c.end() - c.begin()))), 2e-14 * size)
+                    << s.patch.edge_name(int(k)) << " at " << t;
             }
         }
     });
@@ -49,14 +52,20 @@ TEST_P(PatchLaw, JetsAgreeWithCentralDifferences) {
         for (int n = 0; n < 20; ++n) {
             const Vec2 p = random_parameter(r, patch, 0.02);
             if (near(patch.breaks_u(), p.x, hu) || near(patch.breaks_v(), p.y, hv)) continue;
-            const PointJet at = patch.jet(p.x, p.y), u0 = patch.jet(p.x - hu, p.y), u1 = patch.jet(p.x + hu, p.y), v0 = patch.jet(p.x, p.y - hv), v1 = patch.jet(p.x, p.y + hv);
+            const PointJet at = patch.jet(p.x, p.y), u0 = patch.jet(p.x - hu, p.y), u1 = patch.jet(p.x + hu, p.y),
+                           v0 = patch.jet(p.x, p.y - hv), v1 = patch.jet(p.x, p.y + hv);
             EXPECT_LE(distance(patch.point(p.x, p.y), coefficient(at, 0, 0)), 1e-14 * size);
             for (int i = 0; i <= 1; ++i)
                 for (int j = 0; i + j <= 1; ++j) {
-                    const double scale = 1e-6 * (size + length(coefficient(at, i + 1, j)) + length(coefficient(at, i, j + 1))) / std::min(hu, hv) * 1e-5 * 10;
-                    const Point du = (coefficient(u1, i, j) - coefficient(u0, i, j)) / (2 * hu * (i + 1)), dv = (coefficient(v1, i, j) - coefficient(v0, i, j)) / (2 * hv * (j + 1));
-                    EXPECT_LE(distance(du, coefficient(at, i + 1, j)), scale) << "d/du of (" << i << "," << j << ") at " << p.x << ", " << p.y;
-                    EXPECT_LE(distance(dv, coefficient(at, i, j + 1)), scale) << "d/dv of (" << i << "," << j << ") at " << p.x << ", " << p.y;
+                    const double scale =
+                        1e-6 * (size + length(coefficient(at, i + 1, j)) + length(coefficient(at, i, j + 1))) /
+                        std::min(hu, hv) * 1e-5 * 10;
+                    const Point du = (coefficient(u1, i, j) - coefficient(u0, i, j)) / (2 * hu * (i + 1)),
+                                dv = (coefficient(v1, i, j) - coefficient(v0, i, j)) / (2 * hv * (j + 1));
+                    EXPECT_LE(distance(du, coefficient(at, i + 1, j)), scale)
+                        << "d/du of (" << i << "," << j << ") at " << p.x << ", " << p.y;
+                    EXPECT_LE(distance(dv, coefficient(at, i, j + 1)), scale)
+                        << "d/dv of (" << i << "," << j << ") at " << p.x << ", " << p.y;
                 }
         }
     });
@@ -79,7 +88,8 @@ TEST_P(PatchLaw, PacksEqualScalarsBitForBit) {
                 }
                 std::vector<Point> out(count);
                 patch.points(count, u.data(), v.data(), out.data());
-                for (std::size_t i = 0; i < count; ++i) EXPECT_TRUE(out[i] == patch.point(u[i], v[i])) << u[i] << ", " << v[i];
+                for (std::size_t i = 0; i < count; ++i)
+                    EXPECT_TRUE(out[i] == patch.point(u[i], v[i])) << u[i] << ", " << v[i];
             }
     });
 }
@@ -122,8 +132,7 @@ TEST_P(PatchLaw, EvaluationIsFiniteEverywhereAndRefusesTheRest) {
             if (n % 2) p = s.patch.edge_point(n % s.patch.edges(), n % 5 ? r.number() : n % 3 / 2.0);
             const SurfacePoint e = evaluate(s.patch, p.x, p.y);
             EXPECT_TRUE(finite(e.position));
-            for (const auto& d : {e.du, e.dv, e.duu, e.duv, e.dvv, e.normal})
-                EXPECT_TRUE(!d || finite(*d));
+            for (const auto& d : {e.du, e.dv, e.duu, e.duv, e.dvv, e.normal}) EXPECT_TRUE(!d || finite(*d));
             EXPECT_NEAR(length(e.normal.value_or(Point{0, 0, 1})), 1, 1e-15);
             EXPECT_TRUE(std::isfinite(e.gaussian.value_or(0)) && std::isfinite(e.mean.value_or(0)));
         }
@@ -134,7 +143,8 @@ TEST_P(PatchLaw, EvaluationIsFiniteEverywhereAndRefusesTheRest) {
 }
 
 TEST_P(PatchLaw, TransformedMovesPointsNormalsAndCurvature) {
-    const Transform map = Transform::translate({1, 2, 3}) * Transform::rotate({1, 2, 2}, 77) * Transform::mirror({1, 0, 1}, 0.5);
+    const Transform map =
+        Transform::translate({1, 2, 3}) * Transform::rotate({1, 2, 2}, 77) * Transform::mirror({1, 0, 1}, 0.5);
     each([&](const PatchSample& s, Random& r) {
         const Patch moved = transformed(s.patch, map);
         const double size = size_of_sample(s.patch) + 4;

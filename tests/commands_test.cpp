@@ -1,0 +1,154 @@
+// The real program from its command line: results, exit codes, files.
+#include <gtest/gtest.h>
+#include <json/json.h>
+
+#include <sstream>
+
+#include "run_program.h"
+
+namespace isoparm::test {
+namespace {
+
+std::string scene(const std::string& name) { return "'" + source_folder() + "/scenes/" + name + ".json'"; }
+
+Json::Value parsed(const std::string& text) {
+    Json::Value v;
+    std::istringstream in(text);
+    std::string errors;
+    EXPECT_TRUE(Json::parseFromStream(Json::CharReaderBuilder(), in, &v, &errors)) << errors << text;
+    return v;
+}
+void expect(const std::string& arguments, int code, const std::string& message) {
+    const Outcome o = run(arguments);
+    EXPECT_EQ(o.code, code) << arguments << "\n" << o.err;
+    EXPECT_NE((o.out + o.err).find(message), std::string::npos) << arguments << "\n" << o.out << o.err;
+}
+
+TEST(Commands, HelpAndVersion) {
+    expect("--help", 0, "tessellate");
+    expect("help eval", 0, "usage: isoparm eval");
+    expect("--version", 0, "isoparm ");
+    expect("", 64, "usage: isoparm COMMAND");
+    for (const char* c : {"info", "eval", "tessellate", "render", "figures", "limit"}) expect(std::string(c) + " --help", 0, "usage: isoparm " + std::string(c));
+}
+TEST(Commands, UsageErrorsSuggest) {
+    expect("rendr x", 64, "did you mean \"render\"?");
+    expect("check x", 64, "not built yet");
+    expect("info " + scene("coons") + " --jsn", 64, "did you mean \"--json\"?");
+    expect("info", 64, "expected one scene");
+    expect("info a b", 64, "expected one scene");
+    expect("info " + scene("coons") + " --set", 64, "needs a value");
+    expect("info " + scene("coons") + " --set x", 64, "expected PARAMETER=NUMBER");
+    expect("info " + scene("coons") + " --set x=1", 64, "has no such parameter");
+    expect("info --threads 0 " + scene("coons"), 64, "expected a whole number from 1");
+    expect("info --json=yes " + scene("coons"), 64, "takes no value");
+    expect("eval " + scene("coons"), 64, "--at is missing");
+    expect("eval " + scene("coons") + " --at 1", 64, "expected u,v");
+    expect("eval " + scene("coons") + " --surface T --at 0,0", 64, "expected one of: S");
+    expect("eval " + scene("teapot") + " --at 0,0", 64, "which has 32 patches");
+    expect("eval " + scene("coons") + " --at 0,2", 65, "expected a point of the domain of S: 0 <= u <= 1");
+    expect("eval " + scene("side_vertex") + " --at 0.6,0.6", 65, "u + v <= 1");
+    expect("tessellate " + scene("coons"), 64, "-o is missing");
+    expect("tessellate " + scene("coons") + " -o x.glb", 64, "not built yet");
+    expect("tessellate " + scene("coons") + " -o x.ply --quality optimal", 64, "not built yet");
+    expect("tessellate " + scene("coons") + " -o x.ply --vertices free", 64, "not built yet");
+    expect("tessellate " + scene("coons") + " -o x.ply --certificate c.json", 64, "not built yet");
+    expect("tessellate " + scene("coons") + " -o x.ply --tolerance 0", 64, "expected a positive number");
+    expect("tessellate " + scene("coons") + " -o x.ply --tolerance 1px", 64, "needs a picture");
+    expect("tessellate " + scene("coons") + " -o x.ply --measure angular", 64, "expected one of: geometric, parametric");
+    expect("render " + scene("coons") + " -o x.png --exact", 64, "not built yet");
+    expect("render " + scene("coons") + " -o x.png --size 10", 64, "expected WIDTHxHEIGHT");
+    expect("figures nothing -o /tmp", 64, "expected one of: composite_coons");
+}
+TEST(Commands, InfoTellsWhatIsThere) {
+    expect("info " + scene("sphere"), 0, "octant: bezier, degree 2 x 2, rational");
+    const Json::Value v = parsed(run("info --json --set=a=2 " + scene("gregory")).out);
+    EXPECT_EQ(v["parameters"]["a"].asDouble(), 2);
+    EXPECT_EQ(v["curves"].size(), 8u);
+    EXPECT_EQ(v["surfaces"][0]["type"].asString(), "coons_hermite");
+}
+TEST(Commands, EvalAnswersInJson) {
+    const Outcome o = run("eval " + scene("sphere") + " --surface octant --at 0.3,0.7 --at 0,0.5 --json");
+    ASSERT_EQ(o.code, 0) << o.err;
+    const Json::Value v = parsed(o.out);
+    EXPECT_EQ(v["surface"].asString(), "octant");
+    ASSERT_EQ(v["points"].size(), 2u);
+    const Json::Value &p = v["points"][0], &pole = v["points"][1];
+    EXPECT_EQ(p["at"][1].asDouble(), 0.7);
+    double norm = 0;
+    for (int i = 0; i < 3; ++i) norm += p["S"][i].asDouble() * p["S"][i].asDouble();
+    EXPECT_NEAR(norm, 1, 1e-15);
+    EXPECT_NEAR(p["gaussian"].asDouble(), 1, 1e-13);
+    for (const char* key : {"Su", "Sv", "Suu", "Suv", "Svv", "n"}) EXPECT_EQ(p[key].size(), 3u) << key;
+    EXPECT_NEAR(pole["n"][2].asDouble(), 1, 1e-15);
+    EXPECT_TRUE(pole["gaussian"].isNull());
+    EXPECT_TRUE(parsed(run("eval " + scene("gregory") + " --at 0,0 --json").out)["points"][0]["Suv"].isNull());
+    expect("eval " + scene("sphere") + " --surface sphere/south/octant --at 0,0", 0, "S         0 0 -1");
+    expect("eval --at -0.5,0 -- " + scene("coons"), 65, "found -0.5,0");
+}
+TEST(Commands, TessellateWritesMeshAndReport) {
+    const TemporaryFolder t;
+    for (const char* name : {"sphere", "coons"}) {
+        const Outcome o = run("tessellate " + scene(name) + " -o " + t / "m.ply" + " --tolerance 1e-3rel --report " + t / "r.json");
+        ASSERT_EQ(o.code, 0) << o.err;
+        EXPECT_EQ(o.out, "");
+        EXPECT_NE(o.err.find("certified error"), std::string::npos);
+        const Json::Value r = parsed(read_all(t / "r.json"));
+        EXPECT_LE(r["certified_error"].asDouble(), r["tolerance"].asDouble());
+        EXPECT_LE(r["sampled_error"].asDouble(), r["certified_error"].asDouble());
+        EXPECT_EQ(r["t_junctions"].asInt(), 0);
+        EXPECT_EQ(r["non_manifold_edges"].asInt(), 0);
+        EXPECT_EQ(r["boundary_loops"].asInt(), std::string(name) == "sphere" ? 0 : 1);
+        EXPECT_EQ(r["measure"].asString(), "geometric");
+        ASSERT_EQ(r["surfaces"].size(), 1u);
+        EXPECT_EQ(r["surfaces"][0]["triangles"].asUInt64(), r["triangles"].asUInt64());
+        EXPECT_GT(r["surfaces"][0]["optimal_triangles"].asDouble(), 0);
+        const std::string mesh = read_all(t / "m.ply");
+        EXPECT_NE(mesh.find("element vertex " + std::to_string(r["vertices"].asUInt64()) + "\n"), std::string::npos);
+    }
+    EXPECT_EQ(t.files(), 2u);
+}
+TEST(Commands, TheMeshDoesNotDependOnThreads) {
+    const TemporaryFolder t;
+    ASSERT_EQ(run("tessellate " + scene("teapot") + " --quiet --tolerance 1e-3rel --threads 1 -o " + t / "one.ply").code, 0);
+    const Outcome o = run("tessellate " + scene("teapot") + " --quiet --tolerance 1e-3rel --threads 7 -o " + t / "seven.ply");
+    ASSERT_EQ(o.code, 0);
+    EXPECT_EQ(o.err, "");
+    EXPECT_TRUE(read_all(t / "one.ply") == read_all(t / "seven.ply"));
+}
+TEST(Commands, ABudgetEndsWithWhatWasReached) {
+    const TemporaryFolder t;
+    write_all(t / "m.ply", "old");
+    const Outcome o = run("tessellate " + scene("sphere") + " -o " + t / "m.ply" + " --tolerance 1e-6 --max-triangles 1000");
+    EXPECT_EQ(o.code, 2) << o.err;
+    EXPECT_NE(o.err.find("triangles"), std::string::npos) << o.err;
+    EXPECT_EQ(read_all(t / "m.ply"), "old");
+}
+TEST(Commands, OutputThatCannotBeWrittenIsAnInputOutputError) {
+    const TemporaryFolder t;
+    expect("tessellate " + scene("coons") + " --tolerance 1e-2 -o " + t / "no/folder/m.ply", 4, "No such file or directory");
+    std::filesystem::create_directory(t / "d.ply");
+    expect("tessellate " + scene("coons") + " --tolerance 1e-2 -o " + t / "d.ply", 4, "Is a directory");
+    if (std::filesystem::exists("/dev/full")) {
+        const int status = std::system(("'" + program() + "' info " + scene("coons") + " >/dev/full 2>'" + t / "err" + "'").c_str());
+        EXPECT_EQ(WEXITSTATUS(status), 4);
+        EXPECT_NE(read_all(t / "err").find("standard output: writing failed"), std::string::npos);
+    }
+}
+TEST(Commands, FiguresRendersEverySceneAndAContactSheet) {
+    const TemporaryFolder t;
+    write_all(t / "good.json", read_all(source_folder() + "/scenes/coons.json"));
+    write_all(t / "bad.json", "{");
+    ::setenv("ISOPARM_SCENES", t.path().c_str(), 1);
+    const Outcome both = run("figures -o " + t / "both" + " --size 32x24 --samples 1 --tolerance 1e-2rel");
+    const Outcome one = run("figures good -o " + t / "one" + " --size 32x24 --samples 1 --tolerance 1e-2rel");
+    ::unsetenv("ISOPARM_SCENES");
+    EXPECT_EQ(both.code, 65) << "the code of the one that failed";
+    EXPECT_NE(both.err.find("bad.json:1:"), std::string::npos) << both.err;
+    EXPECT_EQ(one.code, 0) << one.err;
+    for (const char* f : {"both/good.png", "both/contact_sheet.png", "one/good.png", "one/contact_sheet.png"}) EXPECT_GT(read_all(t / f).size(), 60u) << f;
+    EXPECT_FALSE(std::filesystem::exists(t / "both/bad.png"));
+}
+
+}  // namespace
+}  // namespace isoparm::test

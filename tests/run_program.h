@@ -1,0 +1,76 @@
+// run_program.h -- runs the real program and collects what it says.
+#pragma once
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace isoparm::test {
+
+inline std::string program() {
+    if (const char* given = std::getenv("ISOPARM_PROGRAM")) return given;
+#ifdef ISOPARM_PROGRAM
+    return ISOPARM_PROGRAM;
+#else
+    return "isoparm";
+#endif
+}
+inline std::string source_folder() {
+    if (const char* given = std::getenv("ISOPARM_SOURCE_DIR")) return given;
+#ifdef ISOPARM_SOURCE_DIR
+    return ISOPARM_SOURCE_DIR;
+#else
+    return ".";
+#endif
+}
+
+/// A folder of its own, removed in the end.
+class TemporaryFolder {
+public:
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "isoparm-test-XXXXXX").string();
+        if (!::mkdtemp(name.data())) std::abort();
+        path_ = name;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+    const std::string& path() const { return path_; }
+    std::size_t files() const {
+        std::size_t n = 0;
+        for ([[maybe_unused]] const auto& f : std::filesystem::directory_iterator(path_)) ++n;
+        return n;
+    }
+
+private:
+    std::string path_;
+};
+
+inline std::string read_all(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+inline void write_all(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+struct Outcome {
+    int code;
+    std::string out, err;
+};
+/// `arguments` is shell text; runs in `folder` when it is not empty.
+inline Outcome run(const std::string& arguments, const std::string& folder = "") {
+    const TemporaryFolder t;
+    const std::string command = (folder.empty() ? "" : "cd '" + folder + "' && ") + "'" + program() + "' " + arguments + " >'" + t / "out" + "' 2>'" + t / "err" + "' </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_all(t / "out"), read_all(t / "err")};
+}
+
+}  // namespace isoparm::test
