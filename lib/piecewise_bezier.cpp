@@ -67,7 +67,8 @@ template <class T> void piece_taylor(const BezierPiece& piece, const T& t, int o
 template <> void piece_taylor(const BezierPiece& piece, const Interval& t, int order, Vec3<Interval>* out) {
     const int n = piece.degree();
     const Interval h = Interval(piece.end) - Interval(piece.begin);
-    const Interval s = (t - Interval(piece.begin)) / h;
+    // Parameters lie in the piece; only rounding can put the ends of t outside.
+    const Interval s = clip((t - Interval(piece.begin)) / h, {0, 1});
     Interval c[3][max_degree + 1], w[max_degree + 1];
     const bool rational = !piece.weights.empty();
     double low[max_degree + 1]{}, high[max_degree + 1]{};
@@ -93,11 +94,19 @@ template <> void piece_taylor(const BezierPiece& piece, const Interval& t, int o
     }
     if (rational) {
         bezier_taylor(piece.weights.data(), 1, n, s, order, w);
-        for (auto& x : c)
+        // Convex hull: over a wide interval the expansions may overshoot, even below 0 in the denominator.
+        const auto [lightest, heaviest] = std::minmax_element(piece.weights.begin(), piece.weights.end());
+        w[0] = intersection(w[0], {*lightest, *heaviest});
+        for (int axis = 0; axis < 3; ++axis) {
+            auto& x = c[axis];
             for (int k = 0; k <= order; ++k) {
                 for (int l = 0; l < k; ++l) x[k] = x[k] - x[l] * w[k - l];
                 x[k] = x[k] / w[0];
+                if (k > 0) continue;
+                const auto [a, b] = std::minmax_element(piece.points.begin(), piece.points.end(), [axis](const Point& p, const Point& q) { return p[axis] < q[axis]; });
+                x[0] = intersection(x[0], {(*a)[axis], (*b)[axis]});
             }
+        }
     }
     Interval scale(1.0);
     for (int k = 0; k <= order; ++k) {

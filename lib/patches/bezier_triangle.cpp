@@ -12,6 +12,7 @@ struct Coordinate {
     int degree;
     std::vector<Interval> c;  // rows k = 0..n, in each j = 0..n-k; already times the multinomial coefficient
     Polynomial exact{0.0};
+    Interval convex_hull;
 
     template <class S> std::vector<S> powers(const S& x) const {
         std::vector<S> p{S(1.0)};
@@ -52,7 +53,10 @@ struct BezierTriangle {
         requires(N > 0)
     {
         JetUV<Interval, N> x[4];
-        for (std::size_t k = 0; k < n.size(); ++k) n[k].exact.template jets<N>(0.5, 0.5, u.c[0], v.c[0], nullptr, &x[k]);
+        for (std::size_t k = 0; k < n.size(); ++k) {
+            n[k].exact.template jets<N>(0.5, 0.5, u.c[0], v.c[0], nullptr, &x[k]);
+            x[k].c[0] = intersection(x[k].c[0], n[k].convex_hull);
+        }
         const Vec3<JetUV<Interval, N>> p{x[0], x[1], x[2]};
         return n.size() == 3 ? p : p / x[3];
     }
@@ -75,11 +79,14 @@ Patch make_bezier_triangle(int degree, const std::vector<Point>& points, const s
     for (int axis = 0; axis < (weights.empty() ? 3 : 4); ++axis) {
         Coordinate coordinate{degree, {}};
         std::size_t at = 0;
+        coordinate.convex_hull = axis == 3 ? Interval(weights[0]) : Interval(points[0][axis]) * Interval(weights.empty() ? 1 : weights[0]);
         for (int k = 0; k <= degree; ++k)
             for (int j = 0; j <= degree - k; ++j, ++at) {
                 const double multinomial = binomial(degree, k) * binomial(degree - k, j);
                 const Interval value = axis == 3 ? Interval(1) : Interval(points[at][axis]);
-                coordinate.c.push_back(Interval(multinomial) * (weights.empty() ? value : Interval(weights[at]) * value));
+                const Interval weighted = weights.empty() ? value : Interval(weights[at]) * value;
+                coordinate.convex_hull = hull(coordinate.convex_hull, weighted);
+                coordinate.c.push_back(Interval(multinomial) * weighted);
             }
         coordinate.exact = coordinate(x, y, z);
         patch.n.push_back(std::move(coordinate));

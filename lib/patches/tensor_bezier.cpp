@@ -24,11 +24,12 @@ template <class S> void bernstein(int n, const S& t, std::vector<S>& out) {
 struct Coordinate {
     Grid<double> c;
     Polynomial exact;
+    Interval convex_hull;
 
-    explicit Coordinate(const Grid<Interval>& coefficients) {
+    explicit Coordinate(const Grid<Interval>& coefficients) : convex_hull(coefficients[0][0]) {
         for (const auto& row : coefficients) {
             c.emplace_back();
-            for (const auto& x : row) c.back().push_back(mid(x));
+            for (const auto& x : row) c.back().push_back(mid(x)), convex_hull = hull(convex_hull, x);
         }
         std::vector<Polynomial> bu, bv;
         bernstein(int(c.size()) - 1, Polynomial::variable_u({0, 1}), bu);
@@ -90,8 +91,10 @@ private:
     static auto evaluate(const Cell& cell, const Jet<Interval, I1, J1, N>& s, const Jet<Interval, I2, J2, N>& t) {
         using R = JetUV<Interval, N>;
         R n[4];
+        const Interval unit(0, 1);  // parameters lie in the cell; only rounding can put the ends of a box outside
         for (std::size_t k = 0; k < cell.n.size(); ++k) {
-            cell.n[k].exact.template jets<N>(0.5, 0.5, s.c[0], t.c[0], nullptr, &n[k]);
+            cell.n[k].exact.template jets<N>(0.5, 0.5, clip(s.c[0], unit), clip(t.c[0], unit), nullptr, &n[k]);
+            n[k].c[0] = intersection(n[k].c[0], cell.n[k].convex_hull);
             for (int c = 0; c < R::size; ++c) {
                 const auto [i, j] = R::powers[c];
                 for (int q = 0; q < i; ++q) n[k].c[c] = n[k].c[c] * s.coefficient(1, 0);

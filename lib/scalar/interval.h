@@ -122,6 +122,11 @@ inline Interval abs(const Interval& a) {
 }
 inline Interval min(const Interval& a, const Interval& b) { return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)}; }
 inline Interval max(const Interval& a, const Interval& b) { return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)}; }
+/// What both enclosures of the same number leave; a alone should rounding have parted them.
+inline Interval intersection(const Interval& a, const Interval& b) {
+    const Interval c(std::max(a.lo, b.lo), std::min(a.hi, b.hi));
+    return c.lo <= c.hi ? c : a;
+}
 /// The common part; where there is none by rounding, the nearest point of b.
 inline Interval clip(const Interval& a, const Interval& b) {
     return {std::clamp(a.lo, b.lo, b.hi), std::clamp(a.hi, b.lo, b.hi)};

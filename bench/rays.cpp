@@ -1,0 +1,132 @@
+// rays.cpp -- primary rays of the renderer beside bare Embree on the same mesh, hits turned into points of the exact
+// surface, and complete pictures.
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "bare_embree.h"
+#include "cases.h"
+#include "drawn.h"
+#include "picture.h"
+#include "sampler.h"
+#include "surfel.h"
+#include "traced_scene.h"
+
+namespace isoparm::bench {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 120, kSamples = EmbreeScene::packet;
+constexpr double kRelative = 1e-4;
+
+/// The surfaces of a scene without tubes, balls and lines, so that bare Embree meets the same triangles.
+Scene surfaces_only(const std::string& name) {
+    Scene scene = load_scene(ISOPARM_SOURCE_DIR "/scenes/" + name + ".json");
+    std::erase_if(scene.objects, [](const SceneObject& o) { return o.kind != SceneObject::Kind::surface; });
+    for (SceneObject& o : scene.objects) o.boundary = false, o.isolines = {}, o.opacity = 1;
+    return scene;
+}
+
+/// All that is made before time is taken.
+struct View {
+    Scene scene;
+    TracedScene traced;
+    Camera camera;
+    std::vector<Ray> rays;  // the samples of one pixel after those of another, as the renderer traces them
+    std::unique_ptr<BareEmbree> robust, fast;
+
+    explicit View(const std::string& name)
+        : scene(surfaces_only(name)), camera(make_camera(scene.camera, drawn_points(scene), kWidth, kHeight)) {
+        const Bounds box = bounding_box(scene);
+        traced = build_traced_scene(scene, kRelative * box.diagonal(), {});
+        const PixelFilter filter;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const PixelSampler sampler(x, y, kSamples);
+                for (int i = 0; i < kSamples; ++i) {
+                    const Vec2 at = filter(sampler(i, 0));
+                    rays.push_back(camera.ray(x + 0.5 + at.x, y + 0.5 + at.y));
+                }
+            }
+        const Point centre = 0.5 * (box.low + box.high);
+        robust = std::make_unique<BareEmbree>(traced.meshes.at(0), centre, rays, true);
+        fast = std::make_unique<BareEmbree>(traced.meshes.at(0), centre, rays, false);
+        if (traced.meshes.size() != 1) throw std::logic_error("more than one surface is drawn");
+    }
+
+    /// use(ray, hit) for every ray that hits; their number.
+    template <class Use> std::size_t intersect(Use use) const {
+        Hit hits[EmbreeScene::packet];
+        std::size_t found = 0;
+        for (std::size_t k = 0; k < rays.size(); k += EmbreeScene::packet) {
+            traced.embree->intersect(&rays[k], EmbreeScene::packet, hits);
+            for (int i = 0; i < EmbreeScene::packet; ++i)
+                if (hits[i].found()) use(rays[k + i], hits[i]), ++found;
+        }
+        return found;
+    }
+    /// Bare Embree starts its rays at the eye, the renderer where they enter the scene: silhouettes may round either way.
+    void compare() const {
+        const double ours = double(intersect([](const Ray&, const Hit&) {})), theirs = double(robust->intersect_16());
+        if (std::fabs(ours - theirs) > 1e-4 * theirs) throw std::logic_error("the two do not hit the same mesh");
+    }
+};
+
+void add(std::vector<Case>& cases, const std::string& scene, const std::string& title) {
+    const auto view = std::make_shared<std::unique_ptr<View>>();
+    const auto prepare = [view, scene] {
+        if (*view) return;
+        *view = std::make_unique<View>(scene);
+        (*view)->compare();
+    };
+    const std::string packets = "rtcIntersect16, robust, bare";
+    const auto rays = [&](const std::string& name, auto trace, const std::string& beside) {
+        cases.push_back({"primary rays: " + title, name, "rays",
+                         [view, trace] {
+                             const View& v = **view;
+                             const double rays = double(v.rays.size()), hits = double(trace(v));
+                             return Work{rays, 0, {{"triangles", double(v.traced.triangles)}, {"hits/ray", hits / rays}}};
+                         },
+                         beside, 1, prepare, 0});
+    };
+    rays(packets, [](const View& v) { return v.robust->intersect_16(); }, "");
+    rays("rtcIntersect16, not robust, bare", [](const View& v) { return v.fast->intersect_16(); }, packets);
+    rays("rtcIntersect1, robust, bare", [](const View& v) { return v.robust->intersect_1(); }, packets);
+    rays("EmbreeScene::intersect", [](const View& v) { return v.intersect([](const Ray&, const Hit&) {}); }, packets);
+    rays("... and surfel_at each hit",
+         [](const View& v) {
+             double sum = 0;
+             const std::size_t found = v.intersect(
+                 [&](const Ray& ray, const Hit& hit) { sum += surfel_at(v.traced, v.camera, ray, hit).normal.x; });
+             if (!std::isfinite(sum)) throw std::logic_error("a normal is not finite");
+             return found;
+         },
+         packets);
+
+    const auto picture = [&](const std::string& name, int threads, const std::string& beside) {
+        cases.push_back({"pictures: " + title, name, "samples",
+                         [view] {
+                             RenderOptions options;
+                             options.width = kWidth;
+                             options.height = kHeight;
+                             options.samples = kSamples;
+                             options.tolerance = Tolerance{Tolerance::Unit::relative, kRelative};
+                             const Picture p = render((*view)->scene, options);
+                             const double samples = double(kWidth) * kHeight * kSamples;
+                             return Work{samples, p.seconds_trace, {{"triangles", double(p.triangles)}}};
+                         },
+                         beside, threads, prepare, 0});
+    };
+    picture("render(), one thread", 1, "");
+    picture("render(), all cores", 0, "render(), one thread");
+}
+
+}  // namespace
+
+std::vector<Case> ray_cases() {
+    std::vector<Case> cases;
+    add(cases, "teapot", "teapot at 1e-4");
+    add(cases, "side_vertex", "side-vertex triangle at 1e-4");
+    return cases;
+}
+
+}  // namespace isoparm::bench

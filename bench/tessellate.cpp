@@ -1,0 +1,58 @@
+// tessellate.cpp -- certified triangles a second: everything that tessellate() does, from patches to a mesh with its
+// error proved, its topology counted and its error sampled.
+#include "tessellate.h"
+
+#include <stdexcept>
+
+#include "cases.h"
+#include "drawn.h"
+
+namespace isoparm::bench {
+namespace {
+
+/// All surfaces that a scene draws.
+Composite patches_of(const std::string& scene_name) {
+    const Scene scene = load_scene(ISOPARM_SOURCE_DIR "/scenes/" + scene_name + ".json");
+    Composite all;
+    for (const SceneObject& o : drawn_objects(scene))
+        if (o.kind == SceneObject::Kind::surface)
+            for (const Member& m : surface_of(scene, o).patches) all.push_back(m);
+    return all;
+}
+
+Work tessellate_once(const Composite& surface, double relative) {
+    TessellationOptions options;
+    options.tolerance = relative * bounding_box(surface).diagonal();
+    const Tessellation t = tessellate(surface, options);
+    if (!(t.certified_error <= t.tolerance) || t.topology.t_junctions > 0)
+        throw std::logic_error("the mesh is not what was asked for");
+    double optimal = 0;
+    for (const SurfaceReport& r : t.surfaces) optimal += r.optimal_triangles;
+    const double n = static_cast<double>(t.mesh.triangle_count());
+    return {n, 0, {{"triangles", n}, {"of optimum", n / optimal}, {"proved/seen", t.certified_error / t.sampled_error}}};
+}
+
+}  // namespace
+
+std::vector<Case> tessellation_cases() {
+    struct {
+        const char *scene, *title;
+    } const surfaces[] = {{"teapot", "teapot, 32 bicubic patches"},
+                          {"sphere", "sphere, 8 rational octants"},
+                          {"composite_coons", "2x2 Coons network"},
+                          {"side_vertex", "side-vertex triangle"}};
+    std::vector<Case> cases;
+    for (const auto& [scene, title] : surfaces) {
+        const Composite patches = patches_of(scene);
+        const std::string table = std::string("tessellation: ") + title;
+        for (const auto& [text, relative] : {std::pair{"1e-2", 1e-2}, {"1e-3", 1e-3}, {"1e-4", 1e-4}, {"1e-5", 1e-5}})
+            cases.push_back({table, std::string(text) + " of the diagonal, one thread", "triangles",
+                             [patches, relative = relative] { return tessellate_once(patches, relative); }, "", 1, {},
+                             relative < 5e-5 ? 3 : 0});
+        cases.push_back({table, "1e-4 of the diagonal, all cores", "triangles",
+                         [patches] { return tessellate_once(patches, 1e-4); }, "1e-4 of the diagonal, one thread", 0, {}, 0});
+    }
+    return cases;
+}
+
+}  // namespace isoparm::bench
