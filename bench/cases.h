@@ -9,18 +9,23 @@ namespace isoparm::bench {
 
 /// What one round did.
 struct Work {
-    double amount = 0;                                  // in the unit of the case
-    double seconds = 0;                                 // wall time of the part that counts; 0: processor time of it all
-    std::vector<std::pair<std::string, double>> facts;  // about the result; the same every round
+    double amount = 0;                                    // in the unit of the case
+    std::vector<std::pair<std::string, double>> facts{};  // about the result; the same every round
+    double seconds = 0;                                   // for Clock::own
 };
+
+/// Processor time of one thread (TBB gets no other), which other work on the machine hardly disturbs; wall time of all
+/// cores; or wall time of a part, which the round measures itself.
+enum class Clock { processor, wall, own };
 
 struct Case {
     std::string table, name, unit;
     std::function<Work()> round;
-    std::string beside;               // the case of the same table whose rate is 1; may be empty
+    bool reference = false;           // the ratios of a table are to the fastest of these in it
+    Clock clock = Clock::processor;
     int threads = 1;                  // 0: all cores
-    std::function<void()> prepare{};  // once, before time is taken; throws when the two do not compute the same
-    int repetitions = 0;              // 0: as many as asked for; otherwise at most this
+    int repetitions = 1000;           // at most
+    std::function<void()> prepare{};  // before time is taken; throws when a case and its reference do not agree
 };
 
 /// Points and derivatives beside loops written by hand for the same surfaces.

@@ -84,31 +84,34 @@ template <class S> struct Pair {
     }
 };
 
+template <class J> Point sum(const Vec3<J>& jet) {
+    Point r;
+    for (int k = 0; k < J::size; ++k) r += Point{jet.x.c[k], jet.y.c[k], jet.z.c[k]};
+    return r;
+}
+
 template <class S> void add(std::vector<Case>& cases, const std::string& surface, const S& by_hand, Patch patch) {
     const auto pair = std::make_shared<Pair<S>>(by_hand, std::move(patch));
-    const auto prepare = [pair] { pair->compare(); };
-    const auto add_one = [&](const std::string& table, const std::string& name, auto run, const std::string& beside) {
-        cases.push_back({"evaluation: " + surface + ", " + table, name, "points",
-                         [pair, run] {
-                             run(*pair);
-                             return Work{double(kPoints), 0, {}};
-                         },
-                         beside, 1, prepare, 0});
+    const auto add_one = [&](const std::string& table, const std::string& name, auto run, bool reference = false) {
+        Case c{"evaluation: " + surface + ", " + table, name, "points", [pair, run] {
+                   run(*pair);
+                   return Work{double(kPoints)};
+               }};
+        c.reference = reference;
+        c.prepare = [pair] { pair->compare(); };
+        cases.push_back(std::move(c));
     };
     using P = Pair<S>;
-    const std::string by_one = "by hand, one by one", by_eight = "by hand, vectorised";
-    add_one("positions", by_one, [](P& p) { points(p.by_hand, kPoints, p.u.data(), p.v.data(), p.out.data()); }, by_eight);
-    add_one("positions", by_eight,
-            [](P& p) { points_side_by_side(p.by_hand, kPoints, p.u.data(), p.v.data(), p.out.data()); }, "");
-    add_one("positions", "Patch::points", [](P& p) { p.patch.points(kPoints, p.u.data(), p.v.data(), p.out.data()); },
-            by_eight);
-    add_one("positions", "Patch::point",
-            [](P& p) {
-                for (std::size_t i = 0; i < kPoints; ++i) p.out[i] = p.patch.point(p.u[i], p.v[i]);
-            },
-            by_eight);
+    add_one("positions", "by hand, one by one",
+            [](P& p) { points(p.by_hand, kPoints, p.u.data(), p.v.data(), p.out.data()); }, true);
+    add_one("positions", "by hand, eight lanes",
+            [](P& p) { points_side_by_side(p.by_hand, kPoints, p.u.data(), p.v.data(), p.out.data()); }, true);
+    add_one("positions", "Patch::points", [](P& p) { p.patch.points(kPoints, p.u.data(), p.v.data(), p.out.data()); });
+    add_one("positions", "Patch::point", [](P& p) {
+        for (std::size_t i = 0; i < kPoints; ++i) p.out[i] = p.patch.point(p.u[i], p.v[i]);
+    });
 
-    // Everything that was computed is looked at, so that the compiler leaves none of it out.
+    // Everything that was computed is added up, so that the compiler leaves none of it out.
     add_one("derivatives to second order", "by hand",
             [](P& p) {
                 for (std::size_t i = 0; i < kPoints; ++i) {
@@ -116,16 +119,13 @@ template <class S> void add(std::vector<Case>& cases, const std::string& surface
                     p.out[i] = d[0] + d[1] + d[2] + d[3] + d[4] + d[5];
                 }
             },
-            "");
-    add_one("derivatives to second order", "Patch::jet",
-            [](P& p) {
-                for (std::size_t i = 0; i < kPoints; ++i) {
-                    const PointJet j = p.patch.jet(p.u[i], p.v[i]);
-                    p.out[i] = {};
-                    for (int k = 0; k < j.x.size; ++k) p.out[i] += Point{j.x.c[k], j.y.c[k], j.z.c[k]};
-                }
-            },
-            "by hand");
+            true);
+    add_one("derivatives to second order", "Patch::jet", [](P& p) {
+        for (std::size_t i = 0; i < kPoints; ++i) p.out[i] = sum(p.patch.jet(p.u[i], p.v[i]));
+    });
+    add_one("derivatives to second order", "Patch::frame, to first order", [](P& p) {
+        for (std::size_t i = 0; i < kPoints; ++i) p.out[i] = sum(p.patch.frame(p.u[i], p.v[i]));
+    });
 }
 
 }  // namespace

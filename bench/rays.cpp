@@ -78,46 +78,47 @@ void add(std::vector<Case>& cases, const std::string& scene, const std::string& 
         *view = std::make_unique<View>(scene);
         (*view)->compare();
     };
-    const std::string packets = "rtcIntersect16, robust, bare";
-    const auto rays = [&](const std::string& name, auto trace, const std::string& beside) {
-        cases.push_back({"primary rays: " + title, name, "rays",
-                         [view, trace] {
-                             const View& v = **view;
-                             const double rays = double(v.rays.size()), hits = double(trace(v));
-                             return Work{rays, 0, {{"triangles", double(v.traced.triangles)}, {"hits/ray", hits / rays}}};
-                         },
-                         beside, 1, prepare, 0});
+    const auto rays = [&](const std::string& name, auto trace, bool reference = false) {
+        Case c{"rays: " + title, name, "rays", [view, trace] {
+                   const View& v = **view;
+                   const double rays = double(v.rays.size()), hits = double(trace(v));
+                   return Work{rays, {{"triangles", double(v.traced.triangles)}, {"hits/ray", hits / rays}}};
+               }};
+        c.reference = reference;
+        c.prepare = prepare;
+        cases.push_back(std::move(c));
     };
-    rays(packets, [](const View& v) { return v.robust->intersect_16(); }, "");
-    rays("rtcIntersect16, not robust, bare", [](const View& v) { return v.fast->intersect_16(); }, packets);
-    rays("rtcIntersect1, robust, bare", [](const View& v) { return v.robust->intersect_1(); }, packets);
-    rays("EmbreeScene::intersect", [](const View& v) { return v.intersect([](const Ray&, const Hit&) {}); }, packets);
-    rays("... and surfel_at each hit",
-         [](const View& v) {
-             double sum = 0;
-             const std::size_t found = v.intersect(
-                 [&](const Ray& ray, const Hit& hit) { sum += surfel_at(v.traced, v.camera, ray, hit).normal.x; });
-             if (!std::isfinite(sum)) throw std::logic_error("a normal is not finite");
-             return found;
-         },
-         packets);
+    rays("rtcIntersect16, robust", [](const View& v) { return v.robust->intersect_16(); }, true);
+    rays("rtcIntersect16, not robust", [](const View& v) { return v.fast->intersect_16(); });
+    rays("rtcIntersect1, robust", [](const View& v) { return v.robust->intersect_1(); });
+    rays("EmbreeScene::intersect", [](const View& v) { return v.intersect([](const Ray&, const Hit&) {}); });
+    rays("... and surfel_at each hit", [](const View& v) {
+        double sum = 0;
+        const std::size_t found = v.intersect(
+            [&](const Ray& ray, const Hit& hit) { sum += surfel_at(v.traced, v.camera, ray, hit).normal.x; });
+        if (!std::isfinite(sum)) throw std::logic_error("a normal is not finite");
+        return found;
+    });
 
-    const auto picture = [&](const std::string& name, int threads, const std::string& beside) {
-        cases.push_back({"pictures: " + title, name, "samples",
-                         [view] {
-                             RenderOptions options;
-                             options.width = kWidth;
-                             options.height = kHeight;
-                             options.samples = kSamples;
-                             options.tolerance = Tolerance{Tolerance::Unit::relative, kRelative};
-                             const Picture p = render((*view)->scene, options);
-                             const double samples = double(kWidth) * kHeight * kSamples;
-                             return Work{samples, p.seconds_trace, {{"triangles", double(p.triangles)}}};
-                         },
-                         beside, threads, prepare, 0});
+    const auto picture = [&](const std::string& name, int threads) {
+        Case c{"pictures: " + title, name, "samples", [view] {
+                   RenderOptions options;
+                   options.width = kWidth;
+                   options.height = kHeight;
+                   options.samples = kSamples;
+                   options.tolerance = Tolerance{Tolerance::Unit::relative, kRelative};
+                   const Picture p = render((*view)->scene, options);
+                   const double samples = double(kWidth) * kHeight * kSamples;
+                   return Work{samples, {{"triangles", double(p.triangles)}}, p.seconds_trace};
+               }};
+        c.reference = threads == 1;
+        c.clock = Clock::own;  // without the mesh and Embree's hierarchy
+        c.threads = threads;
+        c.prepare = prepare;
+        cases.push_back(std::move(c));
     };
-    picture("render(), one thread", 1, "");
-    picture("render(), all cores", 0, "render(), one thread");
+    picture("render(), one thread", 1);
+    picture("render(), all cores", 0);
 }
 
 }  // namespace

@@ -28,6 +28,8 @@ struct Box {
 /// Position and Taylor coefficients to second order: S = x.c[0..], S_u = coefficient(1,0), S_uu = 2 coefficient(2,0) ...
 /// A coefficient that does not exist (at a singular corner) is NaN.
 using PointJet = Vec3<JetUV<double, 2>>;
+/// Position and first derivatives only: all that shading needs, at a fraction of the cost.
+using PointFrame = Vec3<JetUV<double, 1>>;
 
 /// What is proved over a box, and at its middle. Coefficients that have no bound there are Interval::all().
 struct Enclosure {
@@ -47,6 +49,7 @@ public:
         virtual std::vector<double> breaks_v() const = 0;
         virtual Point point(double u, double v) const = 0;
         virtual PointJet jet(double u, double v) const = 0;
+        virtual PointFrame frame(double u, double v) const = 0;
         /// n positions; bit for bit the same as point().
         virtual void points(std::size_t n, const double* u, const double* v, Point* out) const = 0;
         virtual Enclosure enclose(const Box& box) const = 0;
@@ -61,6 +64,7 @@ public:
     std::vector<double> breaks_v() const { return impl_->breaks_v(); }
     Point point(double u, double v) const { return impl_->point(u, v); }
     PointJet jet(double u, double v) const { return impl_->jet(u, v); }
+    PointFrame frame(double u, double v) const { return impl_->frame(u, v); }
     void points(std::size_t n, const double* u, const double* v, Point* out) const { impl_->points(n, u, v, out); }
     Enclosure enclose(const Box& box) const { return impl_->enclose(box); }
     Vec3<Interval> enclose_points(const Box& box) const { return impl_->enclose_points(box); }

@@ -40,6 +40,7 @@ public:
 
     Point point(double u, double v) const override { return value(run<0>(u, v)); }
     PointJet jet(double u, double v) const override { return run<2>(u, v); }
+    PointFrame frame(double u, double v) const override { return run<1>(u, v); }
 
     void points(std::size_t n, const double* u, const double* v, Point* out) const override {
         for (std::size_t k = 0; k < n; k += Pack::lanes) {

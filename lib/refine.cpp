@@ -36,7 +36,7 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) { return (std::uint64_t
 }  // namespace
 
 Refinement::Refinement(const Composite& surface, const Topology& topology)
-    : surface_(surface), topology_(topology), positions_(topology.nodes), patches_(surface.size()), split_edges_(surface.size()) {
+    : surface_(surface), topology_(topology), positions_(topology.nodes), patches_(surface.size()) {
     for (std::uint32_t r = 0; r < topology.rims.size(); ++r) {
         const Rim& rim = topology.rims[r];
         rim_nodes_.push_back({r, 0, 1, rim.a, rim.b, kNone, false});
@@ -44,6 +44,12 @@ Refinement::Refinement(const Composite& surface, const Topology& topology)
     // Vertices that breaks make inside a patch are numbered patch by patch, so this loop is serial.
     for (std::uint32_t m = 0; m < surface.size(); ++m) build_patch(m);
     tbb::parallel_for(std::size_t(0), surface.size(), [&](std::size_t m) { measure_slack(std::uint32_t(m), 0); });
+    collect_slack(std::vector<std::size_t>(surface.size(), 0));
+}
+
+void Refinement::collect_slack(const std::vector<std::size_t>& first) {
+    for (std::size_t m = 0; m < patches_.size(); ++m)
+        for (std::size_t i = first[m]; i < patches_[m].slack.size(); ++i) worst_slack_ = std::max(worst_slack_, patches_[m].slack[i]);
 }
 
 Vec2 Refinement::on_rim(const RimUse& use, double fraction, const Point& position, double low, double high) const {
@@ -238,14 +244,11 @@ void Refinement::split_rims() {
 void Refinement::split_edges(std::uint32_t member) {
     PatchMesh& mesh = patches_[member];
     const Patch& patch = surface_[member].patch;
-    auto& list = split_edges_[member];
-    list.clear();
     const std::uint32_t n = std::uint32_t(mesh.edges.size());
     for (std::uint32_t i = 0; i < n; ++i) {
         const PatchEdge e = mesh.edges[i];
         const RimNode* node = e.rim_node == kNone ? nullptr : &rim_nodes_[e.rim_node];
         if (e.child != kNone || !(node ? node->child != kNone : e.marked)) continue;
-        list.push_back(i);
         const auto middle = std::uint32_t(mesh.uv.size());
         PatchEdge low{e.a, middle, kNone, kNone, e.use, e.reversed, false}, high{middle, e.b, kNone, kNone, e.use, e.reversed, false};
         if (node) {
@@ -357,6 +360,7 @@ void Refinement::split_marked() {
         measure_slack(std::uint32_t(m), first_corner[m]);
         split_triangles(std::uint32_t(m));
     });
+    collect_slack(first_corner);
 }
 
 bool Refinement::mark_coincident_edges() {

@@ -63,6 +63,8 @@ public:
     /// About how many triangles the tolerance needs, from the bounds so far.
     double predicted_triangles(double tolerance) const;
     double worst_bound() const;
+    /// Largest distance of a mesh vertex from a patch that uses it: no refinement gets below it.
+    double worst_slack() const { return worst_slack_; }
 
     const std::vector<Point>& positions() const { return positions_; }
     const std::vector<PatchMesh>& patches() const { return patches_; }
@@ -76,6 +78,7 @@ private:
     void split_edges(std::uint32_t member);
     void split_triangles(std::uint32_t member);
     void measure_slack(std::uint32_t member, std::size_t first);
+    void collect_slack(const std::vector<std::size_t>& first);
     Vec2 on_rim(const RimUse& use, double fraction, const Point& position, double low, double high) const;
 
     const Composite& surface_;
@@ -83,7 +86,7 @@ private:
     std::vector<Point> positions_;
     std::vector<RimNode> rim_nodes_;           // the first topology.rims.size() are the whole rims
     std::vector<PatchMesh> patches_;
-    std::vector<std::vector<std::uint32_t>> split_edges_;  // per patch: edges bisected in this round
+    double worst_slack_ = 0;
 };
 
 }  // namespace isoparm

@@ -42,6 +42,9 @@ void refine(Refinement& refinement, const TessellationOptions& options) {
     for (int round = 0; round < max_rounds; ++round) {
         const bool done = refinement.bound_and_mark(options.tolerance);
         const double needed = std::max(refinement.predicted_triangles(options.tolerance), double(refinement.triangle_count()));
+        if (refinement.worst_slack() > options.tolerance)
+            throw Error(ErrorKind::budget, "the tolerance " + to_text(options.tolerance) + " cannot be reached: rounding, or a gap between patches that were joined, puts a vertex " +
+                                               to_text(refinement.worst_slack()) + " from its surface; ask for a larger tolerance, or move the data nearer to the origin");
         // The prediction is good to a small factor once there are some triangles everywhere.
         const bool hopeless = needed > double(options.max_triangles) && (round > 8 ? needed > 3.0 * double(options.max_triangles) : false);
         if (hopeless || refinement.triangle_count() > options.max_triangles) give_up(refinement, options, needed);

@@ -7,8 +7,8 @@
 namespace isoparm {
 namespace {
 
-Point derivative(const PointJet& j, int i, int k) {
-    return {j.x.coefficient(i, k), j.y.coefficient(i, k), j.z.coefficient(i, k)};
+Point coefficient(const PointFrame& f, int i, int k) {
+    return {f.x.coefficient(i, k), f.y.coefficient(i, k), f.z.coefficient(i, k)};
 }
 
 /// Parameters of the hit: those of the corners, weighted as the hit is.
@@ -22,13 +22,13 @@ Vec2 parameters(const Patch& patch, const MeshPart& part, const std::array<std::
     return p;
 }
 
-/// Unit; not yet turned to the viewer. `otherwise` where the patch has no normal.
-Point normal_of(const Patch& patch, const PointJet& jet, const Point& du, const Point& dv, const Vec2& at,
-                const Point& otherwise) {
+/// Unit; not yet turned to the viewer. `otherwise` where the patch has no normal. Second derivatives are needed only for
+/// the limit where the first ones do not span a plane.
+Point normal_of(const Patch& patch, const Point& du, const Point& dv, const Vec2& at, const Point& otherwise) {
     const Point n = cross(du, dv);
     const double nn = dot(n, n);
     if (nn > 1e-18 * dot(du, du) * dot(dv, dv) && std::isfinite(nn)) return n / std::sqrt(nn);
-    return unit_normal(patch, jet, at.x, at.y).value_or(otherwise);
+    return unit_normal(patch, patch.jet(at.x, at.y), at.x, at.y).value_or(otherwise);
 }
 
 /// A mesh's silhouette shows the surface a little beyond its own: bent just enough to face the viewer.
@@ -61,11 +61,11 @@ Surfel surfel_at(const TracedScene& scene, const Camera& camera, const Ray& ray,
     const Point geometric = toward ? outward : -outward;
 
     const Vec2 at = parameters(*thing.patch, *thing.part, corners, hit);
-    const PointJet jet = thing.patch->jet(at.x, at.y);
-    const Point du = derivative(jet, 1, 0), dv = derivative(jet, 0, 1);
-    Point position = derivative(jet, 0, 0);
+    const PointFrame frame = thing.patch->frame(at.x, at.y);
+    const Point du = coefficient(frame, 1, 0), dv = coefficient(frame, 0, 1);
+    Point position = coefficient(frame, 0, 0);
     if (!finite(position)) position = on_mesh;
-    const Point n = normal_of(*thing.patch, jet, du, dv, at, geometric);
+    const Point n = normal_of(*thing.patch, du, dv, at, geometric);
     s.normal = facing(dot(n, geometric) < 0 ? -n : n, s.view);
     // Above both the surface and the mesh: no facet shadows its own surface.
     s.origin = position + (clear + std::max(0.0, dot(on_mesh - position, s.normal))) * s.normal;

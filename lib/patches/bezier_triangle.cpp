@@ -12,7 +12,7 @@ struct Coordinate {
     int degree;
     std::vector<Interval> c;  // rows k = 0..n, in each j = 0..n-k; already times the multinomial coefficient
     Polynomial exact{0.0};
-    Interval convex_hull;
+    Interval convex_hull{};
 
     template <class S> std::vector<S> powers(const S& x) const {
         std::vector<S> p{S(1.0)};

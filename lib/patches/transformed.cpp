@@ -23,6 +23,7 @@ public:
     std::vector<double> breaks_v() const override { return patch_.breaks_v(); }
     Point point(double u, double v) const override { return map_.point(patch_.point(u, v)); }
     PointJet jet(double u, double v) const override { return moved(map_, patch_.jet(u, v)); }
+    PointFrame frame(double u, double v) const override { return moved(map_, patch_.frame(u, v)); }
     void points(std::size_t n, const double* u, const double* v, Point* out) const override {
         patch_.points(n, u, v, out);
         for (std::size_t i = 0; i < n; ++i) out[i] = map_.point(out[i]);
