@@ -10,20 +10,18 @@ namespace isoparm::bench {
 /// What one round did.
 struct Work {
     double amount = 0;                                    // in the unit of the case
-    std::vector<std::pair<std::string, double>> facts{};  // about the result; the same every round
-    double seconds = 0;                                   // for Clock::own
+    std::vector<std::pair<std::string, double>> facts{};  // about the result
 };
 
-/// Processor time of one thread (TBB gets no other), which other work on the machine hardly disturbs; wall time of all
-/// cores; or wall time of a part, which the round measures itself.
-enum class Clock { processor, wall, own };
+/// Processor time of one thread (TBB gets no other), which other work on the machine hardly disturbs, or wall time of
+/// all cores.
+enum class Clock { one_thread, all_cores };
 
 struct Case {
     std::string table, name, unit;
     std::function<Work()> round;
     bool reference = false;           // the ratios of a table are to the fastest of these in it
-    Clock clock = Clock::processor;
-    int threads = 1;                  // 0: all cores
+    Clock clock = Clock::one_thread;
     int repetitions = 1000;           // at most
     std::function<void()> prepare{};  // before time is taken; throws when a case and its reference do not agree
 };

@@ -57,18 +57,17 @@ Arguments parse(int argc, char** argv) {
 
 std::string full_name(const Case& c) { return c.table + " / " + c.name; }
 
-/// Of each case; the same in every round.
+/// Of each case, as its last round found them.
 using Facts = std::map<std::string, std::vector<std::pair<std::string, double>>>;
 
 void run(benchmark::State& state, const Case& c, Facts& facts) {
     std::optional<tbb::global_control> limit;
-    if (c.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, c.threads);
+    if (c.clock == Clock::one_thread) limit.emplace(tbb::global_control::max_allowed_parallelism, 1);
     if (c.prepare) c.prepare();
     double amount = 0;
     for (auto _ : state) {
         const Work w = c.round();
         amount += w.amount;
-        if (c.clock == Clock::own) state.SetIterationTime(w.seconds);
         facts[full_name(c)] = w.facts;
     }
     state.counters["amount"] = amount;
@@ -83,7 +82,7 @@ public:
         for (const Run& r : runs) {
             if (r.run_type != Run::RT_Iteration) continue;
             const Case& c = cases_.at(std::stoul(r.run_name.function_name));
-            const double seconds = c.clock == Clock::processor ? r.cpu_accumulated_time : r.real_accumulated_time;
+            const double seconds = c.clock == Clock::one_thread ? r.cpu_accumulated_time : r.real_accumulated_time;
             rates_[full_name(c)].push_back(r.counters.at("amount").value / seconds);
         }
     }
@@ -93,7 +92,7 @@ public:
             const auto found = rates_.find(full_name(c));
             if (found == rates_.end()) continue;
             const auto facts = facts_.find(full_name(c));
-            all.push_back({c.table, c.name, c.unit, c.clock == Clock::processor ? "processor" : "wall", c.reference, found->second,
+            all.push_back({c.table, c.name, c.unit, c.clock == Clock::one_thread ? "processor" : "wall", c.reference, found->second,
                            facts == facts_.end() ? std::vector<std::pair<std::string, double>>{} : facts->second});
         }
         return all;
@@ -110,8 +109,7 @@ void measure(const std::vector<Case>& cases, const Arguments& arguments, Facts& 
         const Case& c = cases[k];
         auto* b = benchmark::RegisterBenchmark(std::to_string(k).c_str(), [&c, &facts](benchmark::State& s) { run(s, c, facts); });
         b->Repetitions(std::min(arguments.repetitions, c.repetitions))->MinTime(arguments.seconds);
-        if (c.clock == Clock::wall) b->UseRealTime();
-        if (c.clock == Clock::own) b->UseManualTime();
+        if (c.clock == Clock::all_cores) b->UseRealTime();
     }
     std::string program = "isoparm_bench", interleaved = "--benchmark_enable_random_interleaving=true";
     char* argv[] = {program.data(), interleaved.data(), nullptr};

@@ -79,7 +79,7 @@ void add(std::vector<Case>& cases, const std::string& scene, const std::string& 
         (*view)->compare();
     };
     const auto rays = [&](const std::string& name, auto trace, bool reference = false) {
-        Case c{"rays: " + title, name, "rays", [view, trace] {
+        Case c{"primary rays: " + title + " at 1e-4", name, "rays", [view, trace] {
                    const View& v = **view;
                    const double rays = double(v.rays.size()), hits = double(trace(v));
                    return Work{rays, {{"triangles", double(v.traced.triangles)}, {"hits/ray", hits / rays}}};
@@ -100,33 +100,34 @@ void add(std::vector<Case>& cases, const std::string& scene, const std::string& 
         return found;
     });
 
-    const auto picture = [&](const std::string& name, int threads) {
-        Case c{"pictures: " + title, name, "samples", [view] {
+    // From the scene to its pixels: mesh, Embree's hierarchy, tracing, shading.
+    const auto picture = [&](const std::string& name, Clock clock) {
+        Case c{"pictures: " + title + " at 1e-3", name, "samples", [view] {
                    RenderOptions options;
-                   options.width = kWidth;
-                   options.height = kHeight;
+                   options.width = 2 * kWidth;
+                   options.height = 2 * kHeight;
                    options.samples = kSamples;
-                   options.tolerance = Tolerance{Tolerance::Unit::relative, kRelative};
+                   options.tolerance = Tolerance{Tolerance::Unit::relative, 1e-3};
                    const Picture p = render((*view)->scene, options);
-                   const double samples = double(kWidth) * kHeight * kSamples;
-                   return Work{samples, {{"triangles", double(p.triangles)}}, p.seconds_trace};
+                   const double samples = 4.0 * kWidth * kHeight * kSamples;
+                   return Work{samples, {{"triangles", double(p.triangles)},
+                                         {"part of the mesh", p.seconds_mesh / (p.seconds_mesh + p.seconds_trace)}}};
                }};
-        c.reference = threads == 1;
-        c.clock = Clock::own;  // without the mesh and Embree's hierarchy
-        c.threads = threads;
+        c.reference = clock == Clock::one_thread;
+        c.clock = clock;
         c.prepare = prepare;
         cases.push_back(std::move(c));
     };
-    picture("render(), one thread", 1);
-    picture("render(), all cores", 0);
+    picture("render(), one thread", Clock::one_thread);
+    picture("render(), all cores", Clock::all_cores);
 }
 
 }  // namespace
 
 std::vector<Case> ray_cases() {
     std::vector<Case> cases;
-    add(cases, "teapot", "teapot at 1e-4");
-    add(cases, "side_vertex", "side-vertex triangle at 1e-4");
+    add(cases, "teapot", "teapot");
+    add(cases, "side_vertex", "side-vertex triangle");
     return cases;
 }
 

@@ -9,12 +9,12 @@
 namespace isoparm::bench {
 namespace {
 
-/// Best rate over that of the fastest reference in the table; 0 where none was run.
+/// Median over that of the fastest reference in the table; 0 where none was run.
 double ratio(const Measured& m, const std::vector<Measured>& all) {
     double fastest = 0;
     for (const Measured& other : all)
-        if (other.table == m.table && other.reference) fastest = std::max(fastest, other.best());
-    return fastest > 0 ? m.best() / fastest : 0;
+        if (other.table == m.table && other.reference) fastest = std::max(fastest, other.median());
+    return fastest > 0 ? m.median() / fastest : 0;
 }
 
 std::string text(const char* format, double x) {

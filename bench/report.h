@@ -13,8 +13,7 @@ struct Measured {
     std::vector<double> rates;  // unit/s, one a repetition
     std::vector<std::pair<std::string, double>> facts;
 
-    double median() const;
-    /// Other work on the machine only ever slows a case down, so ratios are taken of these.
+    double median() const;  // ratios are taken of these: a single best may have met a faster clock
     double best() const;
 };
 

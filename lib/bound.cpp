@@ -7,41 +7,39 @@
 namespace isoparm {
 namespace {
 
-using rounding::up;
+using rounding::product_up, rounding::up;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Right-handed frame with n along the surface normal where there is one. Orthonormal up to rounding.
 std::array<Point, 3> frame_at(const Enclosure& e) {
     const auto middle = [](const Interval& x, const Interval& y, const Interval& z) { return Point{mid(x), mid(y), mid(z)}; };
     const Point su = middle(e.centre.x.c[1], e.centre.y.c[1], e.centre.z.c[1]), sv = middle(e.centre.x.c[2], e.centre.y.c[2], e.centre.z.c[2]);
-    Point n = cross(su, sv);
-    if (!(length(n) > 1e-300) || !finite(n)) return {Point{0, 0, 1}, Point{1, 0, 0}, Point{0, 1, 0}};
-    n = normalized(n);
+    const Point n = normalized(cross(su, sv));
+    // No normal, or one whose length underflowed: any orthonormal frame will do.
+    if (!(std::fabs(dot(n, n) - 1) < 4e-15)) return {Point{0, 0, 1}, Point{1, 0, 0}, Point{0, 1, 0}};
     const Point axis = std::fabs(n.x) < 0.6 ? Point{1, 0, 0} : Point{0, 1, 0};
     const Point t = normalized(cross(axis, n));
     return {n, t, cross(n, t)};
 }
-/// |x|^2 <= kFrame^2 * sum (x . f_i)^2 for the frames above: their Gram matrix is the identity up to 1e-15.
+/// |x|^2 <= kFrame^2 * sum (x . f_i)^2 for the frames above: their Gram matrix is the identity up to a few 1e-15.
 constexpr double kFrame = 1 + 1e-14;
 
 Interval along(const Point& f, const Interval& x, const Interval& y, const Interval& z) { return Interval(f.x) * x + Interval(f.y) * y + Interval(f.z) * z; }
 
 /// Length of a vector from upper bounds of its components along a frame.
-double length_bound(const std::array<double, 3>& c) {
-    const double sum = up(up(up(c[0] * c[0]) + up(c[1] * c[1])) + up(c[2] * c[2]));
-    return up(up(std::sqrt(sum)) * kFrame);
-}
+double length_bound(const std::array<double, 3>& c) { return up(rounding::length_up(c[0], c[1], c[2]) * kFrame); }
 
 struct Edge {
-    Interval du, dv;    // corner k+1 minus corner k
-    double uu, uv, vv;  // upper bounds of du^2, |du dv|, dv^2
+    Interval du, dv;  // corner k+1 minus corner k
+    double uu, vv;    // upper bounds of du^2, dv^2
 };
 
 }  // namespace
 
 double simplex_maximum(double a, double b, double c) {
+    if (std::isnan(a) || std::isnan(b) || std::isnan(c)) return kInfinity;  // std::max would pass over one
     const double largest = std::max({a, b, c});
-    if (!(largest > 0)) return largest <= 0 ? 0 : kInfinity;
+    if (largest <= 0) return 0;
     const double edge = largest / 4;
     // On the plane l0 + l1 + l2 = 1 the form is concave iff all coefficients and D are positive; then its maximum over
     // the whole plane is abc/D, attained at l proportional to (b(a+c-b), c(a+b-c), a(b+c-a)) (opposite edge first).
@@ -71,7 +69,6 @@ TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, c
         g.dv = Interval(b.y) - Interval(a.y);
         g.uu = square(g.du).hi;
         g.vv = square(g.dv).hi;
-        g.uv = up(mag(g.du) * mag(g.dv));
     }
     const double aspect = ru > 0 && rv > 0 ? rv / ru : 1;
 
@@ -88,17 +85,17 @@ TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, c
         };
         // Second derivatives at the middle, and how far they stray from there: by the third ones, or by their own range.
         const Interval huu = Interval(2) * centre(2, 0), huv = centre(1, 1), hvv = Interval(2) * centre(0, 2);
-        const double tuuu = 6 * mag(over(3, 0)), tuuv = 2 * mag(over(2, 1)), tuvv = 2 * mag(over(1, 2)), tvvv = 6 * mag(over(0, 3));
-        const double suu = std::min(up(up(tuuu * ru) + up(tuuv * rv)), mag(Interval(2) * over(2, 0) - huu));
-        const double suv = std::min(up(up(tuuv * ru) + up(tuvv * rv)), mag(over(1, 1) - huv));
-        const double svv = std::min(up(up(tuvv * ru) + up(tvvv * rv)), mag(Interval(2) * over(0, 2) - hvv));
+        const double tuuu = up(6 * mag(over(3, 0))), tuuv = 2 * mag(over(2, 1)), tuvv = 2 * mag(over(1, 2)), tvvv = up(6 * mag(over(0, 3)));
+        const double suu = std::min(up(product_up(tuuu, ru) + product_up(tuuv, rv)), mag(Interval(2) * over(2, 0) - huu));
+        const double suv = std::min(up(product_up(tuuv, ru) + product_up(tuvv, rv)), mag(over(1, 1) - huv));
+        const double svv = std::min(up(product_up(tuvv, ru) + product_up(tvvv, rv)), mag(Interval(2) * over(0, 2) - hvv));
         // 2 |du dv| <= aspect du^2 + dv^2 / aspect makes the remainder a diagonal form, which adds up over the corners.
-        const double quu = up(suu + up(suv * aspect)), qvv = up(svv + up(suv / aspect));
+        const double quu = up(suu + product_up(suv, aspect)), qvv = up(svv + (Interval(suv) / Interval(aspect)).hi);
         std::array<double, 3> plus, minus;
         for (int k = 0; k < 3; ++k) {
             const Edge& g = edges[k];
             const Interval b = huu * square(g.du) + Interval(2) * huv * g.du * g.dv + hvv * square(g.dv);
-            const double m = mid(b), q = up(rad(b) + up(up(quu * g.uu) + up(qvv * g.vv)));
+            const double m = mid(b), q = up(rad(b) + up(product_up(quu, g.uu) + product_up(qvv, g.vv)));
             plus[k] = up(m + q);
             minus[k] = up(q - m);
             curved[k] += (std::fabs(m) + q) * (std::fabs(m) + q);
@@ -106,7 +103,7 @@ TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, c
         const double largest = std::max(simplex_maximum(plus[0], plus[1], plus[2]), simplex_maximum(minus[0], minus[1], minus[2]));
         second[f] = up(largest / 2);
         const Interval gu = over(1, 0), gv = over(0, 1), x = over(0, 0);
-        first[f] = up(up(rad(gu) * ru) + up(rad(gv) * rv));
+        first[f] = up(product_up(rad(gu), ru) + product_up(rad(gv), rv));
         zeroth[f] = up(x.hi - x.lo);
         for (int k = 0; k < 3; ++k) {
             const double d = rad(gu) * mag(edges[k].du) + rad(gv) * mag(edges[k].dv);

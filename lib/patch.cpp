@@ -13,6 +13,14 @@ Point first_order(const PointJet& j, int i, int k) { return {j.x.coefficient(i, 
 
 std::optional<Point> if_finite(const Point& p) { return finite(p) ? std::optional<Point>(p) : std::nullopt; }
 
+/// from + t (to - from); at a break where it comes within rounding of one, so that edge_point() inverts edge_breaks().
+double along_range(double from, double to, const std::vector<double>& breaks, double t) {
+    if (t == 0 || t == 1) return t == 0 ? from : to;
+    const double x = std::clamp(from + t * (to - from), from, to), rounding = 4e-16 * (std::fabs(from) + std::fabs(to));
+    const auto near = std::lower_bound(breaks.begin(), breaks.end(), x - rounding);
+    return near != breaks.end() && *near <= x + rounding ? *near : x;
+}
+
 }  // namespace
 
 Vec3<Interval> Patch::enclose_point(double u, double v) const {
@@ -24,10 +32,14 @@ Vec3<Interval> Patch::enclose_point(double u, double v) const {
 }
 
 Vec2 Patch::edge_point(int k, double t) const {
-    if (domain() == Domain::triangle) return k == 0 ? Vec2{0, 1 - t} : k == 1 ? Vec2{t, 0} : Vec2{1 - t, t};
+    if (domain() == Domain::triangle) return k == 0 ? Vec2{0, 1 - t} : k == 1 ? Vec2{t, 0} : Vec2{1 - t, 1 - (1 - t)};
     const Rect r = rect();
-    const double u = t == 0 ? r.u0 : t == 1 ? r.u1 : r.u0 + t * (r.u1 - r.u0), v = t == 0 ? r.v0 : t == 1 ? r.v1 : r.v0 + t * (r.v1 - r.v0);
-    return k == 0 ? Vec2{u, r.v0} : k == 1 ? Vec2{r.u1, v} : k == 2 ? Vec2{u, r.v1} : Vec2{r.u0, v};
+    switch (k) {
+        case 0: return {along_range(r.u0, r.u1, breaks_u(), t), r.v0};
+        case 1: return {r.u1, along_range(r.v0, r.v1, breaks_v(), t)};
+        case 2: return {along_range(r.u0, r.u1, breaks_u(), t), r.v1};
+        default: return {r.u0, along_range(r.v0, r.v1, breaks_v(), t)};
+    }
 }
 
 std::string Patch::edge_name(int k) const {

@@ -73,9 +73,11 @@ public:
 
     int edges() const { return domain() == Domain::quad ? 4 : 3; }
     /// Parameters on edge k, t in [0,1]. Quad: 0 = c0 (v low), 1 = d1 (u high), 2 = c1 (v high), 3 = d0 (u low), each
-    /// along its growing parameter. Triangle: 0 = E1 (B to C, u=0), 1 = E2 (C to A, v=0), 2 = E3 (A to B, w=0).
+    /// along its growing parameter. Triangle: 0 = E1 (B to C, u=0), 1 = E2 (C to A, v=0), 2 = E3 (A to B, w=0). The point
+    /// lies on the boundary of the domain exactly (u + v = 1 without rounding on E3).
     Vec2 edge_point(int k, double t) const;
     std::string edge_name(int k) const;
+    /// The t at which edge_point() hits a break exactly, growing.
     std::vector<double> edge_breaks(int k) const;
 
 private:

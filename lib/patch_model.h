@@ -141,8 +141,7 @@ private:
     double middle_u(std::size_t i) const { return mid(Interval(edges_u_[i], edges_u_[i + 1])); }
     double middle_v(std::size_t j) const { return mid(Interval(edges_v_[j], edges_v_[j + 1])); }
 
-    /// Intervals pick their cell by their middle; a box of one point on a break must not fall to its neighbour, so the
-    /// exact form is preferred and cells are closed on both sides.
+    /// Formulas pick their cell by the lower end of an interval; exact forms are closed on both sides.
     Vec3<Interval> points_in_cell(const Box& box, std::size_t i, std::size_t j) const {
         Vec3<JetUV<Interval, 0>> x;
         if (const auto* p = exact(i, j)) {
@@ -160,6 +159,9 @@ private:
             for (int axis = 0; axis < 3; ++axis)
                 (*p)[axis].template jets<3>(middle_u(i), middle_v(j), box.u, box.v, &e.centre[axis], &e.over[axis]);
         } else {
+            // Formulas give a point on a break to the cell on its right: the middle of a tiny box must not be its upper end.
+            if (e.u == box.u.hi) e.u = box.u.lo;
+            if (e.v == box.v.hi) e.v = box.v.lo;
             e.centre = run<2>(Interval(e.u), Interval(e.v));
             e.over = run<3>(box.u, box.v);
         }

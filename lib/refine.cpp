@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "bound.h"
 
@@ -31,7 +32,17 @@ double edge_parameter(const Patch& patch, int edge, const Vec2& p) {
     return edge == 0 || edge == 2 ? (p.x - r.u0) / (r.u1 - r.u0) : (p.y - r.v0) / (r.v1 - r.v0);
 }
 
-std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) { return (std::uint64_t(std::min(a, b)) << 32) | std::max(a, b); }
+/// A name for the mesh edge that an edge of a patch is, the same whichever patch and direction it is seen from.
+std::uint64_t mesh_edge(const PatchMesh& mesh, const PatchEdge& e) {
+    const auto [a, b] = std::minmax(mesh.vertex[e.a], mesh.vertex[e.b]);
+    return (std::uint64_t(a) << 32) | b;
+}
+
+/// Does the triangle name a mesh vertex twice? Such triangles are segments and not part of the mesh.
+bool left_out(const PatchMesh& mesh, const PatchTriangle& t) {
+    const auto a = mesh.vertex[t.corner[0]], b = mesh.vertex[t.corner[1]], c = mesh.vertex[t.corner[2]];
+    return a == b || b == c || c == a;
+}
 
 }  // namespace
 
@@ -169,12 +180,7 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const auto s = surface_[member].patch.enclose_point(mesh.uv[i].x, mesh.uv[i].y);
             const Point& x = positions_[mesh.vertex[i]];
-            double sum = 0;
-            for (int axis = 0; axis < 3; ++axis) {
-                const double d = mag(Interval(x[axis]) - s[axis]);
-                sum = rounding::up(sum + rounding::up(d * d));
-            }
-            mesh.slack[i] = rounding::up(std::sqrt(sum));
+            mesh.slack[i] = rounding::length_up(mag(Interval(x.x) - s.x), mag(Interval(x.y) - s.y), mag(Interval(x.z) - s.z));
         }
     });
 }
@@ -204,17 +210,15 @@ bool Refinement::bound_and_mark(double tolerance) {
     bool done = true;
     for (std::size_t m = 0; m < patches_.size(); ++m) {
         PatchMesh& mesh = patches_[m];
-        const auto mark = [&](std::uint32_t e) {
-            PatchEdge& edge = mesh.edges[e];
-            edge.marked = true;
-            if (edge.rim_node != kNone) rim_nodes_[edge.rim_node].marked = true;
+        const auto mark_to_split = [&](std::uint32_t e) {
+            mark(mesh.edges[e]);
             done = false;
         };
         for (std::size_t i = 0; i < open[m].size(); ++i) {
             const PatchTriangle& t = mesh.triangles[open[m][i]];
-            if (!(t.bound <= tolerance)) mark(t.edge[worst[m][i]]);
+            if (!(t.bound <= tolerance)) mark_to_split(t.edge[worst[m][i]]);
             for (auto e : t.edge)
-                if (mesh.vertex[mesh.edges[e].a] == mesh.vertex[mesh.edges[e].b] && !collapsed(mesh.edges[e])) mark(e);
+                if (mesh.vertex[mesh.edges[e].a] == mesh.vertex[mesh.edges[e].b] && !collapsed(mesh.edges[e])) mark_to_split(e);
         }
     }
     return done;
@@ -363,27 +367,57 @@ void Refinement::split_marked() {
     collect_slack(first_corner);
 }
 
+void Refinement::mark(PatchEdge& edge) {
+    edge.marked = true;
+    if (edge.rim_node != kNone) rim_nodes_[edge.rim_node].marked = true;
+}
+
 bool Refinement::mark_coincident_edges() {
     std::unordered_map<std::uint64_t, int> count;
     const auto each = [&](auto f) {
-        for (std::size_t m = 0; m < patches_.size(); ++m)
-            for (const auto& t : patches_[m].triangles) {
-                const auto& v = patches_[m].vertex;
-                if (v[t.corner[0]] == v[t.corner[1]] || v[t.corner[1]] == v[t.corner[2]] || v[t.corner[2]] == v[t.corner[0]]) continue;
-                for (int k = 0; k < 3; ++k) f(m, t.edge[k], edge_key(v[t.corner[k]], v[t.corner[(k + 1) % 3]]));
+        for (auto& mesh : patches_)
+            for (const auto& t : mesh.triangles) {
+                if (left_out(mesh, t)) continue;
+                for (const auto e : t.edge) f(mesh.edges[e], mesh_edge(mesh, mesh.edges[e]));
             }
     };
-    each([&](std::size_t, std::uint32_t, std::uint64_t key) { ++count[key]; });
+    each([&](const PatchEdge&, std::uint64_t key) { ++count[key]; });
     bool any = false;
-    each([&](std::size_t m, std::uint32_t e, std::uint64_t key) {
+    each([&](PatchEdge& edge, std::uint64_t key) {
         if (count[key] <= 2) return;
-        PatchEdge& edge = patches_[m].edges[e];
         // Three patches that share one rim: that is how the surface is.
         if (edge.rim_node != kNone && int(topology_.rims[rim_nodes_[edge.rim_node].rim].uses.size()) >= count[key]) return;
-        edge.marked = true;
-        if (edge.rim_node != kNone) rim_nodes_[edge.rim_node].marked = true;
+        mark(edge);
         any = true;
     });
+    return any;
+}
+
+bool Refinement::mark_lost_edges() {
+    const auto any_left_out = [](const PatchMesh& mesh) {
+        return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const PatchTriangle& t) { return left_out(mesh, t); });
+    };
+    if (std::none_of(patches_.begin(), patches_.end(), any_left_out)) return false;
+    std::unordered_set<std::uint64_t> kept;
+    std::vector<char> named(positions_.size(), 0);
+    for (const auto& mesh : patches_)
+        for (const auto& t : mesh.triangles) {
+            if (left_out(mesh, t)) continue;
+            for (const auto e : t.edge) kept.insert(mesh_edge(mesh, mesh.edges[e]));
+            for (const auto c : t.corner) named[mesh.vertex[c]] = 1;
+        }
+    bool any = false;
+    for (auto& mesh : patches_)
+        for (const auto& t : mesh.triangles) {
+            if (!left_out(mesh, t)) continue;
+            for (const auto e : t.edge) {
+                PatchEdge& edge = mesh.edges[e];
+                const bool point = mesh.vertex[edge.a] == mesh.vertex[edge.b];
+                if (point ? named[mesh.vertex[edge.a]] : kept.count(mesh_edge(mesh, edge)) > 0) continue;
+                if (!point) mark(edge);
+                any = true;
+            }
+        }
     return any;
 }
 

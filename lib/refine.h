@@ -58,6 +58,9 @@ public:
     void split_marked();
     /// Marks edges where more than two triangles meet that are different edges of the surface; false when there is none.
     bool mark_coincident_edges();
+    /// Triangles that name a mesh vertex twice are left out of the mesh: marks those of their edges that no other triangle
+    /// has. False when nothing is lost; true without a mark when a whole patch is one vertex that no triangle has.
+    bool mark_lost_edges();
 
     std::size_t triangle_count() const;
     /// About how many triangles the tolerance needs, from the bounds so far.
@@ -79,6 +82,7 @@ private:
     void split_triangles(std::uint32_t member);
     void measure_slack(std::uint32_t member, std::size_t first);
     void collect_slack(const std::vector<std::size_t>& first);
+    void mark(PatchEdge& edge);
     Vec2 on_rim(const RimUse& use, double fraction, const Point& position, double low, double high) const;
 
     const Composite& surface_;

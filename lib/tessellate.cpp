@@ -38,7 +38,7 @@ double join_tolerance(double tolerance, double diagonal) { return std::min(1e-6 
 void refine(Refinement& refinement, const TessellationOptions& options) {
     double start_bound = 0;
     constexpr int max_rounds = 400;  // every round halves the worst edges; 2 x 52 bits of parameters and room
-    int coincident_rounds = 0;
+    int coincident_rounds = 0, lost_rounds = 0;
     for (int round = 0; round < max_rounds; ++round) {
         const bool done = refinement.bound_and_mark(options.tolerance);
         const double needed = std::max(refinement.predicted_triangles(options.tolerance), double(refinement.triangle_count()));
@@ -46,9 +46,13 @@ void refine(Refinement& refinement, const TessellationOptions& options) {
             throw Error(ErrorKind::budget, "the tolerance " + to_text(options.tolerance) + " cannot be reached: rounding, or a gap between patches that were joined, puts a vertex " +
                                                to_text(refinement.worst_slack()) + " from its surface; ask for a larger tolerance, or move the data nearer to the origin");
         // The prediction is good to a small factor once there are some triangles everywhere.
-        const bool hopeless = needed > double(options.max_triangles) && (round > 8 ? needed > 3.0 * double(options.max_triangles) : false);
+        const bool hopeless = round > 8 && needed > 3.0 * double(options.max_triangles);
         if (hopeless || refinement.triangle_count() > options.max_triangles) give_up(refinement, options, needed);
-        if (done && (coincident_rounds++ > 16 || !refinement.mark_coincident_edges())) return;
+        const bool lost = done && refinement.mark_lost_edges();
+        if (lost && lost_rounds++ > 16)
+            throw Error(ErrorKind::budget, "the tolerance " + to_text(options.tolerance) +
+                                               " was not reached: a part of the surface is so thin that no triangle is left of it; ask for a smaller tolerance, or remove that part");
+        if (done && !lost && (coincident_rounds++ > 16 || !refinement.mark_coincident_edges())) return;
         if (options.progress && !done) {
             const double worst = refinement.worst_bound();
             if (round == 0 || !std::isfinite(start_bound)) start_bound = worst;

@@ -28,7 +28,7 @@ struct Tessellation {
     MeshTopology topology;
     double tolerance = 0;
     double certified_error = 0;  // proved: no point of either set is farther from the other; rounded up
-    double sampled_error = 0;    // largest distance seen at sample points: a lower bound
+    double sampled_error = 0;    // largest distance at equal parameters seen at sample points (parametric, as the certificate)
     std::vector<SurfaceReport> surfaces;
     double seconds_tessellate = 0, seconds_sample = 0;
 };

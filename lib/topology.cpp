@@ -122,7 +122,7 @@ Point conormal(const Composite& surface, const RimUse& use) {
 /// Where an even number of patches, more than two, meet along one rim, several sheets touch there: each patch is paired
 /// with the one that continues it most smoothly, and every pair gets a rim of its own. Three patches on one rim stay: that
 /// is how the surface is.
-void separate_sheets(const Composite& surface, Topology& topology) {
+void separate_sheets(const Composite& surface, Topology& topology, double tolerance) {
     const std::size_t count = topology.rims.size();
     for (std::uint32_t r = 0; r < count; ++r) {
         if (topology.rims[r].uses.size() < 4 || topology.rims[r].uses.size() % 2 != 0) continue;
@@ -141,6 +141,8 @@ void separate_sheets(const Composite& surface, Topology& topology) {
                 copy.uses.clear();
                 topology.rims.push_back(copy);
             }
+            left[a].affine = true;  // it owns the rim now
+            if (!coincide(surface, left[a], left[b], false, 2 * tolerance)) left[b].affine = false;
             for (const std::size_t i : {a, b}) {
                 for (auto& er : topology.edges[left[i].member][left[i].edge])
                     if (er.rim == r && std::min(left[i].t0, left[i].t1) == std::min(er.t0, er.t1)) er.rim = to, er.use = std::uint32_t(topology.rims[to].uses.size());
@@ -277,7 +279,7 @@ Topology find_topology(const Composite& surface, double tolerance) {
                 result.edges[m][k].push_back({r, 0, false, s.nodes[i].t, s.nodes[i + 1].t});
             }
         }
-    separate_sheets(surface, result);
+    separate_sheets(surface, result, tolerance);
     result.flipped = orient(surface, result);
     return result;
 }

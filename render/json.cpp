@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include "suggest.h"
 
@@ -64,6 +65,27 @@ public:
         throw LocatedError(path + ":" + line_and_column(text, offset) + ": at " + message);
     }
 
+    // JsonCpp reads "-" as 0, and "+1", "01", "-.5" and "5." as well.
+    static bool is_json_number(std::string_view s) {
+        std::size_t i = 0;
+        const auto digits = [&] {
+            const std::size_t start = i;
+            while (i < s.size() && s[i] >= '0' && s[i] <= '9') ++i;
+            return i - start;
+        };
+        if (i < s.size() && s[i] == '-') ++i;
+        const std::size_t whole = i;
+        const std::size_t count = digits();
+        if (count == 0 || (count > 1 && s[whole] == '0')) return false;
+        if (i < s.size() && s[i] == '.' && (++i, digits() == 0)) return false;
+        if (i < s.size() && (s[i] == 'e' || s[i] == 'E')) {
+            ++i;
+            if (i < s.size() && (s[i] == '+' || s[i] == '-')) ++i;
+            if (digits() == 0) return false;
+        }
+        return i == s.size();
+    }
+
     // What JsonCpp has no message with a place for: not an object, too deep, too many, control characters.
     void check_shape() const {
         int depth = 0;
@@ -96,6 +118,13 @@ public:
             } else if (c == '}' || c == ']') {
                 --depth;
             }
+            if (c == '-' || c == '+' || c == '.' || (c >= '0' && c <= '9')) {
+                const std::size_t start = i, end = std::min(text.find_first_not_of("+-.0123456789eE", i), text.size());
+                const bool word = end < text.size() && std::isalpha(static_cast<unsigned char>(text[end]));  // -Infinity, 0x10: JsonCpp refuses these
+                if (!word && !is_json_number(std::string_view(text).substr(start, end - start)))
+                    fail(start, "$: found " + quoted(text.substr(start, std::min<std::size_t>(end - start, 20))) + ", expected a number as JSON writes it, like -0.5 or 1e-3");
+                i = end - 1;
+            }
             if ((c == ',' || c == '{' || c == '[') && ++values > kMaxValues) {
                 fail(i, "$: found more than " + std::to_string(kMaxValues) + " values, expected fewer");
             }
@@ -120,6 +149,7 @@ static void rethrow_syntax(const JsonDocument& document, const std::string& mess
     offset = std::min(offset + column - 1, document.text.size());
     const std::size_t begin = messages.find("\n  ", at);
     std::string what = begin == std::string::npos ? messages : messages.substr(begin + 3, messages.find('\n', begin + 3) - begin - 3);
+    if (what.size() > 200) what = what.substr(0, 200) + "...";
     if (what.rfind("Duplicate key", 0) == 0) what = "found a key for the second time (" + what + "), expected every key once";
     else {
         const std::size_t end = std::min(document.text.find_first_of("\n\r", offset), document.text.size());

@@ -138,6 +138,59 @@ TEST(Bound, SimplexMaximumIsExact) {
     }
 }
 
+TEST(Bound, WhatIsNotANumberHasNoBound) {
+    for (int k = 0; k < 3; ++k) {
+        double c[3] = {1, 1, 1};
+        c[k] = NAN;
+        EXPECT_EQ(simplex_maximum(c[0], c[1], c[2]), HUGE_VAL);
+    }
+}
+
+/// Area of the domain that the triangles of a part cover.
+double covered(const MeshPart& part) {
+    double area = 0;
+    for (const auto& t : part.triangles) {
+        const Vec2 &a = part.uv[t[0]], &b = part.uv[t[1]], &c = part.uv[t[2]];
+        area += 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    }
+    return std::abs(area);
+}
+
+// Samples on the triangles cannot see a triangle that is missing. Knots such as k of [0,49] are no edge_point() of a
+// rounded k/49, so each must be found again exactly.
+TEST(Tessellate, TheDomainIsCoveredWhateverTheKnots) {
+    Random random(9);
+    for (int i = 0; i < 24; ++i) {
+        const int spans = i < 4 ? 49 + i : 6;
+        double knot = i < 4 ? 0 : random.number(-3, 3);
+        std::vector<double> knots(3, knot);
+        for (int k = 1; k < spans; ++k) knots.push_back(knot += i < 4 ? 1 : random.number(0.1, 1.1));
+        knots.insert(knots.end(), 3, knot + 1);
+        Grid<Point> points(std::size_t(spans + 2), std::vector<Point>(2));
+        for (std::size_t k = 0; k < points.size(); ++k)
+            for (std::size_t j = 0; j < 2; ++j) points[k][j] = {double(k), 4.0 * double(j), random.number(-1, 1)};
+        const Patch patch = make_bspline_patch(2, 1, knots, {0, 0, 1, 1}, points);
+        const auto t = patch.edge_breaks(0), u = patch.breaks_u();
+        for (std::size_t k = 0; k < u.size(); ++k) EXPECT_EQ(patch.edge_point(0, t[k]).x, u[k]);
+        const Tessellation mesh = tessellate_relative({{"S", patch}}, 1e-2);
+        const double whole = knots.back() - knots.front();
+        EXPECT_NEAR(covered(mesh.mesh.parts[0]), whole, 1e-12 * whole) << i;
+        EXPECT_EQ(mesh.topology.t_junctions, 0u);
+        EXPECT_EQ(mesh.topology.boundary_loops, 1u);
+    }
+}
+
+TEST(Tessellate, NothingSmallerThanTheToleranceIsLost) {
+    const Patch plane = make_bezier_patch({{{0, 0, 0}, {0, 1, 0}}, {{1, 0, 0}, {1, 1, 0}}});
+    const Patch tiny = transformed(plane, Transform::translate({10, 0, 0}) * Transform::scale({1e-8, 1e-8, 1e-8}));
+    const Patch lune = make_bezier_patch({{{10, 0, 0}, {9.9995, 1, 0}, {10, 2, 0}}, {{10, 0, 0}, {10.0005, 1, 0}, {10, 2, 0}}});  // two poles
+    const Patch point = transformed(plane, Transform::translate({10, 0, 0}) * Transform::scale({0, 0, 0}));
+    for (const Patch& thin : {tiny, lune, point}) {
+        const Tessellation t = tessellate({{"plane", plane}, {"thin", thin}}, {1e-2, 1000, {}});
+        EXPECT_GT(t.mesh.parts[1].triangles.size(), 0u);
+    }
+}
+
 TEST(Tessellate, SphereIsClosedAndOnTheUnitSphere) {
     for (const double relative : {1e-1, 1e-2, 1e-3, 1e-4}) {
         const Tessellation t = tessellate_relative(sphere(), relative);

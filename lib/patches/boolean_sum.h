@@ -51,15 +51,16 @@ template <class Basis> struct BooleanSum {
         const auto across_v = basis(v);
         auto p1 = across_u[0] * f[0](v);
         auto p2 = across_v[0] * g[0](u);
-        auto p12 = across_u[0] * (across_v[0] * corner[0][0]);
+        const auto corners = [&](int i) {
+            auto row = across_v[0] * corner[i][0];
+            for (int j = 1; j < n; ++j) row = row + across_v[j] * corner[i][j];
+            return row;
+        };
+        auto p12 = across_u[0] * corners(0);
         for (int i = 1; i < n; ++i) {
             p1 = p1 + across_u[i] * f[i](v);
             p2 = p2 + across_v[i] * g[i](u);
-        }
-        for (int i = 0; i < n; ++i) {
-            auto row = across_v[0] * corner[i][0];
-            for (int j = 1; j < n; ++j) row = row + across_v[j] * corner[i][j];
-            p12 = i == 0 ? across_u[0] * row : p12 + across_u[i] * row;
+            p12 = p12 + across_u[i] * corners(i);
         }
         switch (part) {
             case Part::P1: return p1;

@@ -11,7 +11,7 @@ namespace isoparm {
 /// Positions, tangents and twists agree when they differ by at most this fraction of the data's size.
 inline constexpr double compatibility_tolerance = 1e-9;
 
-/// Largest extent of the curves around their first point, and at least their largest derivative.
+/// Largest distance, at nine samples, of a curve from its own first point.
 inline double size_of(std::initializer_list<const Curve*> curves) {
     double size = 0;
     for (const Curve* c : curves)

@@ -1,5 +1,7 @@
 #include "patches/side_vertex.h"
 
+#include <limits>
+
 #include "patch_model.h"
 #include "patches/compatibility.h"
 #include "scalar/cone.h"
@@ -37,7 +39,9 @@ Patch make_side_vertex(const std::array<Curve, 3>& edges, const Function& H, Sid
     require_equal("E1(1) = E2(0) (vertex C)", E[0](1), E[1](0), size);
     require_equal("E2(1) = E3(0) (vertex A)", E[1](1), E[2](0), size);
     require_equal("E3(1) = E1(0) (vertex B)", E[2](1), E[0](0), size);
-    if (const double gap = std::abs(H(0)); !(gap <= 1e-12)) throw IncompatibleError("H(0) = 0", gap, 1e-12);
+    // No rounding here: H(0) is how far the surface is torn at a vertex, and cone() takes it for 0.
+    constexpr double nothing = std::numeric_limits<double>::min();
+    if (const double gap = std::abs(H(0)); !(gap <= nothing)) throw IncompatibleError("H(0) = 0", gap, nothing);
     if (const double gap = std::abs(H(1) - 1); !(gap <= 1e-12)) throw IncompatibleError("H(1) = 1", gap, 1e-12);
     return make_patch(SideVertex{E, E[2](0), E[0](0), E[1](0), H, form});
 }

@@ -9,7 +9,7 @@ namespace isoparm {
 /// affine invariant only when H(t) - t is symmetric; the two agree when H is quadratic.
 enum class SideVertexForm { delta, seed };
 
-/// edges E1: B to C, E2: C to A, E3: A to B, each run over [0,1]. H(0) = 0, H(1) = 1. C1 at the vertices when H'(0) = 0,
+/// edges E1: B to C, E2: C to A, E3: A to B, each run over [0,1]. H(0) = 0 exactly, H(1) = 1 within 1e-12. C1 at the vertices when H'(0) = 0,
 /// otherwise a cone point there. Throws IncompatibleError when the edges do not close or H has other end values.
 Patch make_side_vertex(const std::array<Curve, 3>& edges, const Function& H, SideVertexForm form = SideVertexForm::delta);
 }

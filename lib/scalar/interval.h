@@ -17,6 +17,16 @@ inline constexpr double kUnit = 0x1p-53 * (1 + 0x1p-52);
 inline constexpr double kTiny = std::numeric_limits<double>::min();
 inline double down(double x) { return x == 0 ? 0 : x - (std::fabs(x) * kUnit + kTiny); }
 inline double up(double x) { return x == 0 ? 0 : x + (std::fabs(x) * kUnit + kTiny); }
+/// At least a * b; up(a * b) is not where the product underflows to 0.
+inline double product_up(double a, double b) {
+    const double p = a * b;
+    return p == 0 && a != 0 && b != 0 ? kTiny : up(p);
+}
+/// At least sqrt(x^2 + y^2 + z^2), for x, y, z >= 0; NaN stays NaN. The sum is a bound too, where squares underflow.
+inline double length_up(double x, double y, double z) {
+    const double squares = up(up(up(x * x) + up(y * y)) + up(z * z));
+    return squares < 1e-280 ? up(up(x + y) + z) : up(std::sqrt(squares));
+}
 }  // namespace rounding
 
 struct Interval {

@@ -25,7 +25,7 @@ void shift_taylor(const Interval* a, int degree, const Interval& d, int order, I
         Interval power(1);  // encloses d^(j-k)
         for (int j = k + 1; j <= degree; ++j) {
             if (symmetric) {  // even powers are not negative, odd ones lie in [-r^n, r^n]
-                p = rounding::up(p * r);
+                p = rounding::product_up(p, r);
                 power = Interval((j - k) % 2 == 0 ? 0 : -p, p);
             } else {
                 power = power * d;
@@ -79,15 +79,11 @@ Interval Polynomial::range() const {
     return sum;
 }
 
-namespace {
-Interval wider(const Interval& a, const Interval& b) { return hull(a, b); }
-}  // namespace
-
 Polynomial operator+(const Polynomial& a, const Polynomial& b) {
     if (!a.exists() || !b.exists()) return Polynomial::nothing();
     Polynomial r(std::max(a.p_, b.p_), std::max(a.q_, b.q_));
-    r.x_ = wider(a.x_, b.x_);
-    r.y_ = wider(a.y_, b.y_);
+    r.x_ = hull(a.x_, b.x_);
+    r.y_ = hull(a.y_, b.y_);
     for (int i = 0; i <= a.p_; ++i)
         for (int j = 0; j <= a.q_; ++j) r.coefficient(i, j) = a.coefficient(i, j);
     for (int i = 0; i <= b.p_; ++i)
@@ -104,8 +100,8 @@ Polynomial operator-(const Polynomial& a) {
 Polynomial operator*(const Polynomial& a, const Polynomial& b) {
     if (!a.exists() || !b.exists() || a.p_ + b.p_ > 64 || a.q_ + b.q_ > 64) return Polynomial::nothing();
     Polynomial r(a.p_ + b.p_, a.q_ + b.q_);
-    r.x_ = wider(a.x_, b.x_);
-    r.y_ = wider(a.y_, b.y_);
+    r.x_ = hull(a.x_, b.x_);
+    r.y_ = hull(a.y_, b.y_);
     for (int i = 0; i <= a.p_; ++i)
         for (int j = 0; j <= a.q_; ++j)
             for (int k = 0; k <= b.p_; ++k)

@@ -108,9 +108,9 @@ void Polynomial::jets(double centre_u, double centre_v, const Interval& u, const
                 const double m = rounding::up(pv * (binomial(s, i) * binomial(t, j)));
                 if (s == i && t == j) sum = sum + a[s * stride + t];
                 else sum = sum + a[s * stride + t] * Interval(even ? 0 : -m, m);
-                pv = rounding::up(pv * rv);
+                pv = rounding::product_up(pv, rv);
             }
-            pu = rounding::up(pu * ru);
+            pu = rounding::product_up(pu, ru);
         }
         over->c[k] = sum;
     }

@@ -62,7 +62,7 @@ void print_text(std::ostream& out, const Scene& scene) {
     }
     const Bounds box = bounding_box(scene);
     const auto row = [&](const Point& p) { out << "  " << to_text(p.x) << " " << to_text(p.y) << " " << to_text(p.z) << "\n"; };
-    out << "\nbounding box of what is drawn (it encloses it), diagonal " << to_text(box.diagonal()) << "\n";
+    out << "\nbounding box of what is drawn (sampled), diagonal " << to_text(box.diagonal()) << "\n";
     row(box.low);
     row(box.high);
     out << "\ndraws " << scene.objects.size() << (scene.objects.size() == 1 ? " object" : " objects") << ", tolerance " << tolerance_text(scene.tolerance)
