@@ -57,16 +57,39 @@ std::vector<double> Patch::edge_breaks(int k) const {
     return list;
 }
 
+namespace {
+
+/// Derivatives per width of the domain and per size of the largest of them: free of units, so that thresholds mean the
+/// same for every knot vector and every scale.
+struct ScaledDerivatives {
+    Point u, v, uu, uv, vv;
+    double noise;  // rounding errors of these, as they come from coordinates of the size of the position
+
+    ScaledDerivatives(const Patch& patch, const PointJet& jet) {
+        const Rect r = patch.rect();
+        const double du = r.u1 - r.u0, dv = r.v1 - r.v0;
+        u = du * first_order(jet, 1, 0), v = dv * first_order(jet, 0, 1);
+        uu = 2 * du * du * first_order(jet, 2, 0), uv = du * dv * first_order(jet, 1, 1), vv = 2 * dv * dv * first_order(jet, 0, 2);
+        double size = 0;
+        for (const Point* d : {&u, &v, &uu, &uv, &vv})
+            for (int axis = 0; axis < 3; ++axis)
+                if (std::isfinite((*d)[axis])) size = std::max(size, std::fabs((*d)[axis]));
+        if (!(size > 0)) size = 1;
+        for (Point* d : {&u, &v, &uu, &uv, &vv}) *d = *d / size;
+        const Point p = first_order(jet, 0, 0) / size;
+        noise = 64 * 0x1p-52 * (1 + std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}));
+    }
+    bool regular() const { return length(cross(u, v)) > noise * (length(u) + length(v)); }
+};
+
+}  // namespace
+
 std::optional<Point> unit_normal(const Patch& patch, const PointJet& jet, double u, double v) {
-    const Point su = first_order(jet, 1, 0), sv = first_order(jet, 0, 1);
-    if (!finite(su) || !finite(sv)) return {};
-    const Point n = cross(su, sv);
-    const double suu = length(2.0 * first_order(jet, 2, 0)), svv = length(2.0 * first_order(jet, 0, 2)), suv = length(first_order(jet, 1, 1));
-    const double scale = std::max({length(su), length(sv), std::isfinite(suu) ? suu : 0, std::isfinite(svv) ? svv : 0, std::isfinite(suv) ? suv : 0});
-    if (length(n) > 1e-12 * scale * scale) return normalized(n);
+    const ScaledDerivatives d(patch, jet);
+    if (!finite(d.u) || !finite(d.v)) return {};
+    if (d.regular()) return normalized(cross(d.u, d.v));
     // S_u x S_v vanishes: the direction in which it leaves 0 when one moves into the domain, if all ways agree.
-    const Point nu = cross(2.0 * first_order(jet, 2, 0), sv) + cross(su, first_order(jet, 1, 1));
-    const Point nv = cross(first_order(jet, 1, 1), sv) + cross(su, 2.0 * first_order(jet, 0, 2));
+    const Point nu = cross(d.uu, d.v) + cross(d.u, d.uv), nv = cross(d.uv, d.v) + cross(d.u, d.vv);
     if (!finite(nu) || !finite(nv)) return {};
     std::vector<Vec2> inward;
     if (patch.domain() == Domain::quad) {
@@ -83,9 +106,9 @@ std::optional<Point> unit_normal(const Patch& patch, const PointJet& jet, double
         }
     }
     std::optional<Point> limit;
-    for (const Vec2& d : inward) {
-        const Point m = d.x * nu + d.y * nv;
-        if (length(m) <= 1e-12 * scale * scale) continue;
+    for (const Vec2& way : inward) {
+        const Point m = way.x * nu + way.y * nv;
+        if (length(m) <= d.noise) continue;
         const Point unit = normalized(m);
         if (limit && length(unit - *limit) > 1e-7) return {};
         limit = limit ? limit : unit;
@@ -109,11 +132,10 @@ SurfacePoint evaluate(const Patch& patch, double u, double v) {
     s.duv = if_finite(first_order(jet, 1, 1));
     s.dvv = if_finite(2.0 * first_order(jet, 0, 2));
     s.normal = unit_normal(patch, jet, u, v);
-    if (!s.du || !s.dv || !s.duu || !s.duv || !s.dvv || !s.normal) return s;
+    if (!s.du || !s.dv || !s.duu || !s.duv || !s.dvv || !s.normal || !ScaledDerivatives(patch, jet).regular()) return s;
     const double E = dot(*s.du, *s.du), F = dot(*s.du, *s.dv), G = dot(*s.dv, *s.dv);
     const double L = dot(*s.duu, *s.normal), M = dot(*s.duv, *s.normal), N = dot(*s.dvv, *s.normal);
     const double area = E * G - F * F;
-    if (!(area > 1e-24 * (E + G) * (E + G))) return s;
     s.gaussian = (L * N - M * M) / area;
     s.mean = (E * N - 2 * F * M + G * L) / (2 * area);
     return s;

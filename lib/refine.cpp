@@ -434,6 +434,13 @@ double Refinement::predicted_triangles(double tolerance) const {
     return sum;
 }
 
+std::size_t Refinement::unbounded_count() const {
+    std::size_t n = 0;
+    for (const auto& p : patches_)
+        for (const auto& t : p.triangles) n += !std::isfinite(t.bound);
+    return n;
+}
+
 double Refinement::worst_bound() const {
     double worst = 0;
     for (const auto& p : patches_)

@@ -66,6 +66,8 @@ public:
     /// About how many triangles the tolerance needs, from the bounds so far.
     double predicted_triangles(double tolerance) const;
     double worst_bound() const;
+    /// Triangles over which nothing could be proved yet.
+    std::size_t unbounded_count() const;
     /// Largest distance of a mesh vertex from a patch that uses it: no refinement gets below it.
     double worst_slack() const { return worst_slack_; }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
 
 #include "error.h"
 #include "refine.h"
@@ -24,7 +25,7 @@ double join_tolerance(double tolerance, double diagonal) { return std::min(1e-6 
 
 [[noreturn]] void give_up(const Refinement& refinement, const TessellationOptions& options, double needed) {
     std::ostringstream text;
-    text.precision(3);
+    text.precision(6);
     text << "the tolerance " << to_text(options.tolerance) << " was not reached: ";
     if (needed > double(options.max_triangles))
         text << "about " << needed << " triangles would be needed (" << needed * 120 / 1e9 << " GB), the budget is " << options.max_triangles;
@@ -38,13 +39,22 @@ double join_tolerance(double tolerance, double diagonal) { return std::min(1e-6 
 void refine(Refinement& refinement, const TessellationOptions& options) {
     double start_bound = 0;
     constexpr int max_rounds = 400;  // every round halves the worst edges; 2 x 52 bits of parameters and room
-    int coincident_rounds = 0, lost_rounds = 0;
+    int coincident_rounds = 0, lost_rounds = 0, stale_rounds = 0;
+    std::size_t fewest_unbounded = SIZE_MAX;
     for (int round = 0; round < max_rounds; ++round) {
         const bool done = refinement.bound_and_mark(options.tolerance);
         const double needed = std::max(refinement.predicted_triangles(options.tolerance), double(refinement.triangle_count()));
         if (refinement.worst_slack() > options.tolerance)
             throw Error(ErrorKind::budget, "the tolerance " + to_text(options.tolerance) + " cannot be reached: rounding, or a gap between patches that were joined, puts a vertex " +
                                                to_text(refinement.worst_slack()) + " from its surface; ask for a larger tolerance, or move the data nearer to the origin");
+        // Triangles without any bound must become fewer as they shrink; where they do not, refining on is in vain.
+        const std::size_t unbounded = refinement.unbounded_count();
+        stale_rounds = unbounded > 0 && unbounded >= fewest_unbounded ? stale_rounds + 1 : 0;
+        fewest_unbounded = std::min(fewest_unbounded, unbounded);
+        if (stale_rounds > 40 || unbounded > 200'000)
+            throw Error(ErrorKind::budget, "the tolerance " + to_text(options.tolerance) + " was not reached: over " + std::to_string(unbounded) + " of " +
+                                               std::to_string(refinement.triangle_count()) +
+                                               " triangles nothing could be proved; the surface is not bounded there, or its numbers leave the range that doubles can square");
         // The prediction is good to a small factor once there are some triangles everywhere.
         const bool hopeless = round > 8 && needed > 3.0 * double(options.max_triangles);
         if (hopeless || refinement.triangle_count() > options.max_triangles) give_up(refinement, options, needed);
@@ -166,6 +176,9 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) throw_input("found tolerance " + to_text(options.tolerance) + ", expected a positive number");
     auto start = std::chrono::steady_clock::now();
     const double diagonal = surface.empty() ? 0 : bounding_box(surface).diagonal();
+    // Fourth powers of lengths must stay in the range of doubles.
+    if (!surface.empty() && !(diagonal > 1e-70 && diagonal < 1e70))
+        throw_input("found a surface of size " + to_text(diagonal) + ", expected one between 1e-70 and 1e70 to tessellate; scale the data");
     const Topology topology = find_topology(surface, join_tolerance(options.tolerance, diagonal));
     Refinement refinement(surface, topology);
     refine(refinement, options);
@@ -177,6 +190,8 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     std::vector<std::array<std::uint32_t, 2>> open = refinement.open_edges();
     for (auto& e : open) e = {number[e[0]], number[e[1]]};
     result.topology = analyse(result.mesh, open);
+    if (result.topology.t_junctions > 0 || result.topology.degenerate_triangles > 0)
+        throw std::logic_error("the mesh has " + std::to_string(result.topology.t_junctions) + " T-junctions: please report this scene");
     result.seconds_tessellate = seconds_since(start);
     start = std::chrono::steady_clock::now();
     for (std::size_t m = 0; m < surface.size(); ++m) {

@@ -119,13 +119,13 @@ Point conormal(const Composite& surface, const RimUse& use) {
     return n / length(n);
 }
 
-/// Where an even number of patches, more than two, meet along one rim, several sheets touch there: each patch is paired
-/// with the one that continues it most smoothly, and every pair gets a rim of its own. Three patches on one rim stay: that
-/// is how the surface is.
+/// Where more than two patches meet along one rim, several sheets touch there: each patch is paired with the one that
+/// continues it most smoothly, and every pair gets a rim of its own, so that the mesh is a manifold. The last of an odd
+/// number has an open edge there.
 void separate_sheets(const Composite& surface, Topology& topology, double tolerance) {
     const std::size_t count = topology.rims.size();
     for (std::uint32_t r = 0; r < count; ++r) {
-        if (topology.rims[r].uses.size() < 4 || topology.rims[r].uses.size() % 2 != 0) continue;
+        if (topology.rims[r].uses.size() < 3) continue;
         std::vector<RimUse> left = std::move(topology.rims[r].uses);
         topology.rims[r].uses.clear();
         std::vector<Point> across;
@@ -142,14 +142,15 @@ void separate_sheets(const Composite& surface, Topology& topology, double tolera
                 topology.rims.push_back(copy);
             }
             left[a].affine = true;  // it owns the rim now
-            if (!coincide(surface, left[a], left[b], false, 2 * tolerance)) left[b].affine = false;
-            for (const std::size_t i : {a, b}) {
+            const bool paired = left.size() > 1;
+            if (paired && !coincide(surface, left[a], left[b], false, 2 * tolerance)) left[b].affine = false;
+            for (const std::size_t i : paired ? std::vector<std::size_t>{a, b} : std::vector<std::size_t>{a}) {
                 for (auto& er : topology.edges[left[i].member][left[i].edge])
                     if (er.rim == r && std::min(left[i].t0, left[i].t1) == std::min(er.t0, er.t1)) er.rim = to, er.use = std::uint32_t(topology.rims[to].uses.size());
                 topology.rims[to].uses.push_back(left[i]);
             }
-            left.erase(left.begin() + b), left.erase(left.begin() + a);
-            across.erase(across.begin() + b), across.erase(across.begin() + a);
+            if (paired) left.erase(left.begin() + b), across.erase(across.begin() + b);
+            left.erase(left.begin() + a), across.erase(across.begin() + a);
         }
     }
 }

@@ -287,6 +287,24 @@ TEST(Tessellate, TouchingSheetsStayManifold) {
     EXPECT_EQ(t.topology.boundary_edges, 12u);  // three open edges a sheet; the shared line is inside both surfaces
 }
 
+TEST(Tessellate, ThreeSheetsOnOneEdgeMakeAManifoldWithAnOpenEdge) {
+    const auto sheet = [](double x, double z) { return make_bezier_patch({{{0, 0, 0}, {0, 1, 0}}, {{x, 0, z}, {x, 1, z}}}); };
+    const Composite c{{"a", sheet(1, 0)}, {"b", sheet(-1, 0)}, {"c", sheet(0.1, 1)}};
+    const Tessellation t = tessellate_relative(c, 1e-2);
+    EXPECT_EQ(t.topology.non_manifold_edges, 0u);
+    EXPECT_EQ(t.topology.t_junctions, 0u);
+    EXPECT_GE(t.topology.boundary_edges, 6u + 4u);  // the rims on the common line are split apart
+}
+
+TEST(Tessellate, SizesThatDoublesCannotSquareAreRefused) {
+    for (const double size : {1e-100, 1e100})
+        EXPECT_THROW(tessellate_relative({{"S", transformed(octant(), Transform::scale({size, size, size}))}}, 1e-2), Error);
+    for (const double size : {1e-60, 1e60}) {
+        const Tessellation t = tessellate_relative({{"S", transformed(octant(), Transform::scale({size, size, size}))}}, 1e-2);
+        EXPECT_LE(t.certified_error, t.tolerance);
+    }
+}
+
 TEST(Tessellate, OpenEdgesThatDoNotMeetAreCountedAsTJunctionsByAnalyse) {
     // Must-fail case of the integer check: two triangles against one edge that was not split.
     Mesh mesh;
