@@ -1,5 +1,5 @@
-// bare_embree.h -- Embree and nothing else: float rays that were made before, hits that nobody reads. bare_embree.cpp is
-// the only file here that includes Embree.
+// bare_embree.h -- Embree and nothing else: float rays that were made before, hits that nobody reads. bare_embree.cpp
+// is the only file here that includes Embree.
 #pragma once
 #include <cstddef>
 #include <memory>

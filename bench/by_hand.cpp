@@ -19,12 +19,16 @@ Weights<4> bernstein_1(double t) {
 Weights<4> bernstein_2(double t) { return {6 - 6 * t, 18 * t - 12, 6 - 18 * t, 6 * t}; }
 
 template <int n> Weights<n> blends(double t) {
-    if constexpr (n == 2) return {1 - t, t};
-    else return {1 + t * t * (2 * t - 3), t * (1 + t * (t - 2)), t * t * (t - 1), t * t * (3 - 2 * t)};
+    if constexpr (n == 2)
+        return {1 - t, t};
+    else
+        return {1 + t * t * (2 * t - 3), t * (1 + t * (t - 2)), t * t * (t - 1), t * t * (3 - 2 * t)};
 }
 template <int n> Weights<n> blends_1(double t) {
-    if constexpr (n == 2) return {-1, 1};
-    else return {6 * t * (t - 1), 1 + t * (3 * t - 4), t * (3 * t - 2), 6 * t * (1 - t)};
+    if constexpr (n == 2)
+        return {-1, 1};
+    else
+        return {6 * t * (t - 1), 1 + t * (3 * t - 4), t * (3 * t - 2), 6 * t * (1 - t)};
 }
 Weights<4> hermite_2(double t) { return {12 * t - 6, 6 * t - 4, 6 * t - 2, 6 - 12 * t}; }
 
@@ -47,7 +51,8 @@ template <int n> std::array<Point, n> minus(const std::array<Point, n>& a, const
     return r;
 }
 
-// ---- the same, eight lanes at a time ---------------------------------------------------------------------------------
+// ---- the same, eight lanes at a time
+// ---------------------------------------------------------------------------------
 constexpr int kLanes = 8;
 using Lanes = double[kLanes];
 
@@ -111,8 +116,7 @@ template <int n> void block(const HandCoons<n>& s, const double* u, const double
     }
 }
 
-template <class S>
-void in_blocks(const S& s, std::size_t count, const double* u, const double* v, Point* out) {
+template <class S> void in_blocks(const S& s, std::size_t count, const double* u, const double* v, Point* out) {
     std::size_t k = 0;
     for (; k + kLanes <= count; k += kLanes) {
         Lanes x[3];
@@ -124,7 +128,8 @@ void in_blocks(const S& s, std::size_t count, const double* u, const double* v, 
 
 }  // namespace
 
-// ---- the Bezier patch ------------------------------------------------------------------------------------------------
+// ---- the Bezier patch
+// ------------------------------------------------------------------------------------------------
 Point point(const HandBezier& s, double u, double v) { return sum<4>(bernstein(u), each<4, 4>(s.p, bernstein(v))); }
 
 Derivatives derivatives(const HandBezier& s, double u, double v) {
@@ -141,7 +146,8 @@ void points_side_by_side(const HandBezier& s, std::size_t n, const double* u, co
     in_blocks(s, n, u, v, out);
 }
 
-// ---- the Coons patches: sum_i h_i(u) (f_i - row_i)(v) + sum_j h_j(v) g_j(u) ---------------------------------------------
+// ---- the Coons patches: sum_i h_i(u) (f_i - row_i)(v) + sum_j h_j(v) g_j(u)
+// ---------------------------------------------
 template <int n> Point point(const HandCoons<n>& s, double u, double v) {
     const auto hu = blends<n>(u), hv = blends<n>(v);
     return sum<n>(hu, minus<n>(each<n, 4>(s.f, bernstein(v)), each<n, n>(s.m, hv))) +
@@ -155,8 +161,9 @@ template <int n> Derivatives derivatives(const HandCoons<n>& s, double u, double
     auto f2 = each<n, 4>(s.f, bernstein_2(v));
     const auto g = each<n, 4>(s.g, bernstein(u)), g1 = each<n, 4>(s.g, bernstein_1(u)),
                g2 = each<n, 4>(s.g, bernstein_2(u));
-    Derivatives d{sum<n>(hu, f) + sum<n>(hv, g), sum<n>(hu1, f) + sum<n>(hv, g1),   sum<n>(hu, f1) + sum<n>(hv1, g),
-                  sum<n>(hv, g2),                sum<n>(hu1, f1) + sum<n>(hv1, g1), {}};
+    Derivatives d{sum<n>(hu, f) + sum<n>(hv, g),     sum<n>(hu1, f) + sum<n>(hv, g1),
+                  sum<n>(hu, f1) + sum<n>(hv1, g),   sum<n>(hv, g2),
+                  sum<n>(hu1, f1) + sum<n>(hv1, g1), {}};
     if constexpr (n == 4) {  // linear blends have no second derivative
         const auto hv2 = hermite_2(v);
         f2 = minus<n>(f2, each<n, n>(s.m, hv2));
@@ -175,10 +182,10 @@ void points_side_by_side(const HandCoons<n>& s, std::size_t count, const double*
     in_blocks(s, count, u, v, out);
 }
 
-#define ISOPARM_INSTANTIATE(n)                                                                           \
-    template Point point(const HandCoons<n>&, double, double);                                           \
-    template Derivatives derivatives(const HandCoons<n>&, double, double);                               \
-    template void points(const HandCoons<n>&, std::size_t, const double*, const double*, Point*);        \
+#define ISOPARM_INSTANTIATE(n)                                                                    \
+    template Point point(const HandCoons<n>&, double, double);                                    \
+    template Derivatives derivatives(const HandCoons<n>&, double, double);                        \
+    template void points(const HandCoons<n>&, std::size_t, const double*, const double*, Point*); \
     template void points_side_by_side(const HandCoons<n>&, std::size_t, const double*, const double*, Point*);
 ISOPARM_INSTANTIATE(2)
 ISOPARM_INSTANTIATE(4)

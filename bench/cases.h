@@ -13,14 +13,17 @@ struct Work {
     std::vector<std::pair<std::string, double>> facts{};  // about the result
 };
 
-/// Processor time of one thread (TBB gets no other), which other work on the machine hardly disturbs, or wall time of
-/// all cores.
-enum class Clock { one_thread, all_cores };
+/// What a rate is per second of. Processor time is hardly disturbed by other work on the machine, wall time is.
+enum class Clock {
+    one_thread,    // processor time, while TBB gets one thread
+    core_seconds,  // processor time of all threads together
+    wall,          // of all cores
+};
 
 struct Case {
     std::string table, name, unit;
     std::function<Work()> round;
-    bool reference = false;           // the ratios of a table are to the fastest of these in it
+    bool reference = false;  // the ratios of a table are to the fastest of these in it
     Clock clock = Clock::one_thread;
     int repetitions = 1000;           // at most
     std::function<void()> prepare{};  // before time is taken; throws when a case and its reference do not agree

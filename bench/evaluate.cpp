@@ -102,24 +102,27 @@ template <class S> void add(std::vector<Case>& cases, const std::string& surface
         cases.push_back(std::move(c));
     };
     using P = Pair<S>;
-    add_one("positions", "by hand, one by one",
-            [](P& p) { points(p.by_hand, kPoints, p.u.data(), p.v.data(), p.out.data()); }, true);
-    add_one("positions", "by hand, eight lanes",
-            [](P& p) { points_side_by_side(p.by_hand, kPoints, p.u.data(), p.v.data(), p.out.data()); }, true);
+    add_one(
+        "positions", "by hand, one by one",
+        [](P& p) { points(p.by_hand, kPoints, p.u.data(), p.v.data(), p.out.data()); }, true);
+    add_one(
+        "positions", "by hand, eight lanes",
+        [](P& p) { points_side_by_side(p.by_hand, kPoints, p.u.data(), p.v.data(), p.out.data()); }, true);
     add_one("positions", "Patch::points", [](P& p) { p.patch.points(kPoints, p.u.data(), p.v.data(), p.out.data()); });
     add_one("positions", "Patch::point", [](P& p) {
         for (std::size_t i = 0; i < kPoints; ++i) p.out[i] = p.patch.point(p.u[i], p.v[i]);
     });
 
     // Everything that was computed is added up, so that the compiler leaves none of it out.
-    add_one("derivatives to second order", "by hand",
-            [](P& p) {
-                for (std::size_t i = 0; i < kPoints; ++i) {
-                    const Derivatives d = derivatives(p.by_hand, p.u[i], p.v[i]);
-                    p.out[i] = d[0] + d[1] + d[2] + d[3] + d[4] + d[5];
-                }
-            },
-            true);
+    add_one(
+        "derivatives to second order", "by hand",
+        [](P& p) {
+            for (std::size_t i = 0; i < kPoints; ++i) {
+                const Derivatives d = derivatives(p.by_hand, p.u[i], p.v[i]);
+                p.out[i] = d[0] + d[1] + d[2] + d[3] + d[4] + d[5];
+            }
+        },
+        true);
     add_one("derivatives to second order", "Patch::jet", [](P& p) {
         for (std::size_t i = 0; i < kPoints; ++i) p.out[i] = sum(p.patch.jet(p.u[i], p.v[i]));
     });

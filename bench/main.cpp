@@ -20,7 +20,8 @@
 namespace isoparm::bench {
 namespace {
 
-constexpr const char* kHelp = R"(usage: isoparm_bench [--json FILE] [--repetitions N] [--seconds S] [--filter REGEX] [--list]
+constexpr const char* kHelp =
+    R"(usage: isoparm_bench [--json FILE] [--repetitions N] [--seconds S] [--filter REGEX] [--list]
 
 --json FILE       write everything that was measured to FILE too, - for the standard output instead of the tables
 --repetitions N   of every case (default 7; 3 at most of those that take seconds)
@@ -28,6 +29,8 @@ constexpr const char* kHelp = R"(usage: isoparm_bench [--json FILE] [--repetitio
 --filter REGEX    only cases whose "table / name" matches
 --list            only name the cases
 )";
+
+constexpr const char* kClockNames[] = {"thread", "core", "wall"};
 
 struct Arguments {
     std::string json;
@@ -45,26 +48,37 @@ Arguments parse(int argc, char** argv) {
             if (i + 1 == argc) throw std::invalid_argument(option + " needs a value");
             return argv[++i];
         };
-        if (option == "--json") a.json = value();
-        else if (option == "--repetitions") a.repetitions = std::stoi(value());
-        else if (option == "--seconds") a.seconds = std::stod(value());
-        else if (option == "--filter") a.filter = value();
-        else if (option == "--list") a.list = true;
-        else throw std::invalid_argument("unknown option " + option);
+        if (option == "--json")
+            a.json = value();
+        else if (option == "--repetitions")
+            a.repetitions = std::stoi(value());
+        else if (option == "--seconds")
+            a.seconds = std::stod(value());
+        else if (option == "--filter")
+            a.filter = value();
+        else if (option == "--list")
+            a.list = true;
+        else
+            throw std::invalid_argument("unknown option " + option);
     }
-    if (a.repetitions < 1 || !(a.seconds > 0)) throw std::invalid_argument("--repetitions and --seconds must be positive");
+    if (a.repetitions < 1 || !(a.seconds > 0))
+        throw std::invalid_argument("--repetitions and --seconds must be positive");
     return a;
 }
 
 std::string full_name(const Case& c) { return c.table + " / " + c.name; }
 
-/// Of each case, as its last round found them.
-using Facts = std::map<std::string, std::vector<std::pair<std::string, double>>>;
+/// Of each case, besides its rates.
+struct Known {
+    std::vector<std::pair<std::string, double>> facts;  // of the last round
+    double busy = 0, wall = 0;                          // seconds of all processors, of the clock
+};
+using Facts = std::map<std::string, Known>;
 
 void run(benchmark::State& state, const Case& c, Facts& facts) {
+    if (c.prepare) c.prepare();
     std::optional<tbb::global_control> limit;
     if (c.clock == Clock::one_thread) limit.emplace(tbb::global_control::max_allowed_parallelism, 1);
-    if (c.prepare) c.prepare();
     double amount = 0;
     auto& known = facts[full_name(c)];
     const auto start = std::chrono::steady_clock::now();
@@ -72,12 +86,11 @@ void run(benchmark::State& state, const Case& c, Facts& facts) {
     for (auto _ : state) {
         const Work w = c.round();
         amount += w.amount;
-        known = w.facts;
+        known.facts = w.facts;
     }
     state.counters["amount"] = amount;
-    // Other work takes its share of the cores: so many were really had.
-    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (c.clock == Clock::all_cores) known.emplace_back("cores had", double(std::clock() - busy) / CLOCKS_PER_SEC / wall);
+    known.wall += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    known.busy += double(std::clock() - busy) / CLOCKS_PER_SEC;
 }
 
 /// Collects the rates and shows how far it is.
@@ -89,7 +102,7 @@ public:
         for (const Run& r : runs) {
             if (r.run_type != Run::RT_Iteration) continue;
             const Case& c = cases_.at(std::stoul(r.run_name.function_name));
-            const double seconds = c.clock == Clock::one_thread ? r.cpu_accumulated_time : r.real_accumulated_time;
+            const double seconds = c.clock == Clock::wall ? r.real_accumulated_time : r.cpu_accumulated_time;
             rates_[full_name(c)].push_back(r.counters.at("amount").value / seconds);
         }
     }
@@ -98,9 +111,11 @@ public:
         for (const Case& c : cases_) {
             const auto found = rates_.find(full_name(c));
             if (found == rates_.end()) continue;
-            const auto facts = facts_.find(full_name(c));
-            all.push_back({c.table, c.name, c.unit, c.clock == Clock::one_thread ? "processor" : "wall", c.reference, found->second,
-                           facts == facts_.end() ? std::vector<std::pair<std::string, double>>{} : facts->second});
+            const Known& known = facts_.at(full_name(c));
+            all.push_back({c.table, c.name, c.unit, kClockNames[static_cast<int>(c.clock)], c.reference, found->second,
+                           known.facts});
+            // Other work takes its share of the cores: so many were really had.
+            if (c.clock == Clock::wall) all.back().facts.emplace_back("cores had", known.busy / known.wall);
         }
         return all;
     }
@@ -114,9 +129,11 @@ private:
 void measure(const std::vector<Case>& cases, const Arguments& arguments, Facts& facts, Collector& collector) {
     for (std::size_t k = 0; k < cases.size(); ++k) {
         const Case& c = cases[k];
-        auto* b = benchmark::RegisterBenchmark(std::to_string(k).c_str(), [&c, &facts](benchmark::State& s) { run(s, c, facts); });
+        auto* b = benchmark::RegisterBenchmark(std::to_string(k).c_str(),
+                                               [&c, &facts](benchmark::State& s) { run(s, c, facts); });
         b->Repetitions(std::min(arguments.repetitions, c.repetitions))->MinTime(arguments.seconds);
-        if (c.clock == Clock::all_cores) b->UseRealTime();
+        if (c.clock == Clock::core_seconds) b->MeasureProcessCPUTime();
+        if (c.clock == Clock::wall) b->UseRealTime();
     }
     std::string program = "isoparm_bench", interleaved = "--benchmark_enable_random_interleaving=true";
     char* argv[] = {program.data(), interleaved.data(), nullptr};
@@ -145,7 +162,8 @@ int bench(const Arguments& arguments) {
 
     const std::vector<Measured> all = collector.measured();
     if (arguments.json != "-") write_tables(std::cout, place, all);
-    if (arguments.json == "-") write_json(std::cout, place, all);
+    if (arguments.json == "-")
+        write_json(std::cout, place, all);
     else if (!arguments.json.empty()) {
         std::ofstream file(arguments.json);
         write_json(file, place, all);

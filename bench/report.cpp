@@ -46,30 +46,35 @@ double Measured::median() const {
 double Measured::best() const { return rates.empty() ? 0 : *std::max_element(rates.begin(), rates.end()); }
 
 void write_tables(std::ostream& out, const Place& place, const std::vector<Measured>& all) {
-    out << place.machine << "\nload average " << load_text(place.load_before) << " before, " << load_text(place.load_after) << " after\n";
+    out << place.machine << "\nload average " << load_text(place.load_before) << " before, "
+        << load_text(place.load_after) << " after\n";
     std::size_t width = 0;
     for (const Measured& m : all) width = std::max(width, m.name.size());
     const Measured* last = nullptr;
     for (const Measured& m : all) {
         if (!last || last->table != m.table)
-            out << '\n' << m.table << '\n'
-                << padded("", width + 2, true) << padded(m.unit + "/s: median", 20, false) << padded("best", 10, false) << padded("ratio", 9, false) << '\n';
+            out << '\n'
+                << m.table << '\n'
+                << padded("", width + 2, true) << padded(m.unit + "/s: median", 20, false) << padded("best", 10, false)
+                << padded("ratio", 9, false) << '\n';
         last = &m;
         const double r = ratio(m, all);
-        out << "  " << padded(m.name, width, true) << padded(short_text(m.median()), 20, false) << padded(short_text(m.best()), 10, false)
-            << padded(r > 0 ? text("%.2f", r) : "", 9, false);
-        for (const auto& [name, value] : m.facts) out << "   " << name << ' ' << (value == std::floor(value) ? text("%.0f", value) : text("%.2f", value));
-        out << (m.clock == "processor" ? "" : "   (wall time)") << '\n';
+        out << "  " << padded(m.name, width, true) << padded(short_text(m.median()), 20, false)
+            << padded(short_text(m.best()), 10, false) << padded(r > 0 ? text("%.2f", r) : "", 9, false);
+        for (const auto& [name, value] : m.facts)
+            out << "   " << name << ' ' << (value == std::floor(value) ? text("%.0f", value) : text("%.2f", value));
+        out << (m.clock == "wall" ? "   (wall time)" : "") << '\n';
     }
 }
 
 void write_json(std::ostream& out, const Place& place, const std::vector<Measured>& all) {
-    out << "{\"machine\": " << json_text(place.machine) << ",\n \"load\": [" << json_text(place.load_before) << ", " << json_text(place.load_after)
-        << "],\n \"cases\": [";
+    out << "{\"machine\": " << json_text(place.machine) << ",\n \"load\": [" << json_text(place.load_before) << ", "
+        << json_text(place.load_after) << "],\n \"cases\": [";
     for (std::size_t k = 0; k < all.size(); ++k) {
         const Measured& m = all[k];
-        out << (k ? ",\n  " : "\n  ") << "{\"table\": " << json_text(m.table) << ", \"name\": " << json_text(m.name) << ", \"unit\": " << json_text(m.unit + "/s")
-            << ", \"clock\": " << json_text(m.clock) << ", \"median\": " << json_text(m.median()) << ", \"best\": " << json_text(m.best());
+        out << (k ? ",\n  " : "\n  ") << "{\"table\": " << json_text(m.table) << ", \"name\": " << json_text(m.name)
+            << ", \"unit\": " << json_text(m.unit + "/s") << ", \"clock\": " << json_text(m.clock)
+            << ", \"median\": " << json_text(m.median()) << ", \"best\": " << json_text(m.best());
         if (const double r = ratio(m, all); r > 0)
             out << ", \"reference\": " << (m.reference ? "true" : "false") << ", \"ratio\": " << json_text(r);
         for (const auto& [name, value] : m.facts) out << ", " << json_text(name) << ": " << json_text(value);

@@ -49,6 +49,10 @@ BuiltSurface build_file(const Json& j, SceneBuilder& scene) {
     std::string extension = file.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension != ".bv") path.expected("a file that ends in .bv (other formats are not built yet)");
+    std::error_code code;  // a pipe would wait, a device never end
+    if (std::filesystem::exists(file, code) && !std::filesystem::is_regular_file(file, code)) {
+        path.fail("found " + std::string(std::filesystem::is_directory(file, code) ? "a folder" : "a pipe or device") + ", expected a regular file");
+    }
     std::string text;
     try {
         text = read_text_file(file.string());

@@ -360,6 +360,35 @@ struct FormulaCurve {
 };
 }  // namespace
 
+/// Samples step over a pole; enclosures do not: they stay unbounded however small the interval about it. Where they are
+/// bounded so is the formula, whatever its derivatives do.
+static void check_bounded(const Curve& curve) {
+    static constexpr int kPieces = 128, kMaxDepth = 40, kMaxEnclosures = 20'000;
+    struct Piece {
+        Interval t;
+        int depth;
+    };
+    std::vector<Piece> stack;
+    const double begin = curve.begin(), end = curve.end();
+    const auto knot = [&](int k) { return k == kPieces ? end : std::min(end, begin + (end - begin) * k / kPieces); };
+    for (int k = kPieces; k > 0; --k) stack.push_back({{knot(k - 1), knot(k)}, 0});  // the first one on top
+    for (int count = 0; !stack.empty(); ++count) {
+        const auto [t, depth] = stack.back();
+        stack.pop_back();
+        Vec3<Interval> p;
+        curve.taylor(t, 0, &p);
+        int axis = 0;
+        while (axis < 3 && p[axis].bounded()) ++axis;
+        if (axis == 3) continue;
+        const double m = mid(t);
+        if (depth >= kMaxDepth || count >= kMaxEnclosures || m <= t.lo || m >= t.hi) {
+            throw_input("found " + std::string(1, "xyz"[axis]) + "(t) that cannot be bounded near t = " + to_text(m) + ", expected a finite number on the whole domain");
+        }
+        stack.push_back({{m, t.hi}, depth + 1});
+        stack.push_back({{t.lo, m}, depth + 1});
+    }
+}
+
 Function make_formula(const Expression& formula) {
     const Formula f{std::make_shared<const Expression>(formula)};
     const Coefficients exact = f(Coefficients(std::vector<double>{0, 1}));
@@ -387,7 +416,9 @@ Curve make_formula_curve(const std::array<Expression, 3>& xyz, double begin, dou
     }
     std::sort(curve.switches.begin(), curve.switches.end());
     curve.switches.erase(std::unique(curve.switches.begin(), curve.switches.end()), curve.switches.end());
-    return make_curve(std::move(curve));
+    Curve made = make_curve(std::move(curve));
+    check_bounded(made);
+    return made;
 }
 
 }  // namespace isoparm

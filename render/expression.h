@@ -59,7 +59,8 @@ private:
 
 /// As a function of t. Polynomials with exact coefficients are recognised and run as such.
 Function make_formula(const Expression& formula);
-/// (x(t), y(t), z(t)) over [begin, end]. Throws Error(input) when it is not finite there (at 129 sample points) or jumps.
+/// (x(t), y(t), z(t)) over [begin, end]. Throws Error(input) when it jumps or is not finite there: at 129 sample
+/// points, or where interval arithmetic cannot bound it however small the interval (a pole; 0/0).
 Curve make_formula_curve(const std::array<Expression, 3>& xyz, double begin, double end);
 
 }  // namespace isoparm

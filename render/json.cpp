@@ -65,6 +65,22 @@ public:
         throw LocatedError(path + ":" + line_and_column(text, offset) + ": at " + message);
     }
 
+    // Where the first byte stands that is not UTF-8 (Unicode 15, table 3-7); npos when all is.
+    static std::size_t find_not_utf8(std::string_view s) {
+        for (std::size_t i = 0; i < s.size();) {
+            const auto byte = [&](std::size_t k) { return i + k < s.size() ? static_cast<unsigned char>(s[i + k]) : 0u; };
+            const unsigned c = byte(0), next = byte(1);
+            const std::size_t more = c < 0x80 ? 0 : c >= 0xC2 && c < 0xE0 ? 1 : c >= 0xE0 && c < 0xF0 ? 2 : c >= 0xF0 && c < 0xF5 ? 3 : 4;
+            if (more == 4) return i;
+            for (std::size_t k = 1; k <= more; ++k)
+                if ((byte(k) & 0xC0) != 0x80) return i;
+            const bool overlong = (c == 0xE0 && next < 0xA0) || (c == 0xF0 && next < 0x90);
+            if (overlong || (c == 0xED && next > 0x9F) || (c == 0xF4 && next > 0x8F)) return i;
+            i += more + 1;
+        }
+        return std::string_view::npos;
+    }
+
     // JsonCpp reads "-" as 0, and "+1", "01", "-.5" and "5." as well.
     static bool is_json_number(std::string_view s) {
         std::size_t i = 0;
@@ -113,6 +129,12 @@ public:
                     if (text[i] == '\\') ++i;
                 }
                 if (i >= text.size()) fail(start, "$: found a string that does not end, expected \"");
+                const std::size_t bad = find_not_utf8(std::string_view(text).substr(start, i - start));
+                if (bad != std::string_view::npos) {
+                    char byte[8];
+                    std::snprintf(byte, sizeof byte, "0x%02X", static_cast<unsigned>(static_cast<unsigned char>(text[start + bad])));
+                    fail(start + bad, "$: found the byte " + std::string(byte) + " in a string, expected UTF-8");
+                }
             } else if (c == '{' || c == '[') {
                 if (++depth > kMaxDepth) fail(i, "$: found brackets nested deeper than " + std::to_string(kMaxDepth) + " levels, expected fewer");
             } else if (c == '}' || c == ']') {
@@ -186,6 +208,8 @@ int JsonDocument::add(const ::Json::Value& v, int parent, int index, const std::
         std::sort(members.begin(), members.end());
         for (const auto& m : members) node.children.push_back(add(v[m.second], k, static_cast<int>(node.children.size()), m.second));
     }
+    if (find_not_utf8(node.string) != std::string::npos || find_not_utf8(node.key) != std::string::npos)
+        fail(node.key_begin, "$: found half of a surrogate pair (\\uD800 to \\uDFFF) in a string, expected both halves");
     nodes[k] = std::move(node);
     return k;
 }

@@ -40,12 +40,12 @@ Exit codes: 0 success, 2 something could not be proved or failed a check, 3 not 
 )";
 }
 
+bool is_not_built(const std::string& name) { return std::find(kNotBuiltYet.begin(), kNotBuiltYet.end(), name) != kNotBuiltYet.end(); }
+
 const Command& find_command(const std::string& name) {
     for (const Command* c : kCommands)
         if (name == c->name) return *c;
-    if (std::find(kNotBuiltYet.begin(), kNotBuiltYet.end(), name) != kNotBuiltYet.end()) {
-        throw Error(ErrorKind::usage, "the command " + name + " is not built yet");
-    }
+    if (is_not_built(name)) throw Error(ErrorKind::usage, "the command " + name + " is not built yet");
     std::vector<std::string> names;
     for (const Command* c : kCommands) names.push_back(c->name);
     throw Error(ErrorKind::usage, "unknown command " + quoted(name) + ", expected one of: " + listed(names) + did_you_mean(name, names));
@@ -67,6 +67,8 @@ int run(std::vector<std::string> arguments) {
         std::cout << "isoparm " ISOPARM_VERSION "\n";
     } else if (first == "--help" || first == "-h" || (first == "help" && arguments.empty())) {
         std::cout << help();
+    } else if (is_not_built(first == "help" ? arguments.front() : first) && (first == "help" || asks_for_help(arguments))) {
+        std::cout << "isoparm " << (first == "help" ? arguments.front() : first) << ": not built yet\n";
     } else if (first == "help") {
         std::cout << find_command(arguments.front()).help;
     } else {

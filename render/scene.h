@@ -66,6 +66,7 @@ struct Tolerance {
 
 struct Scene {
     std::string path, title, source;
+    std::string place;  // "path:line:column: at $.objects", or of the whole when nothing is named there
     std::map<std::string, double> parameters;
     std::vector<std::pair<std::string, Curve>> curves;  // in the order of the file
     std::vector<Surface> surfaces;

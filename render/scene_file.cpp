@@ -230,6 +230,7 @@ Scene read_scene(const Json& root, const std::map<std::string, double>& override
 
     Scene scene;
     scene.path = root.file();
+    scene.place = root.place();
     scene.parameters = values.parameters;
     if (const auto schema = root.find("$schema")) values.text(*schema, "the place of the schema");
     if (const auto title = root.find("title")) scene.title = values.text(*title, "a text");
@@ -248,6 +249,7 @@ Scene read_scene(const Json& root, const std::map<std::string, double>& override
     }
     if (const auto objects = root.find("objects")) {
         if (!objects->is(Kind::array)) objects->expected("an array of objects to draw");
+        scene.place = objects->place();
         for (const Json& o : objects->children()) scene.objects.push_back(read_object(o, builder));
     }
     if (scene.objects.empty()) scene.objects = default_objects(scene, builder.used_surfaces());

@@ -61,7 +61,7 @@ public:
         if (result_.triangles > 0)
             result_.certified_error = rounding::up(result_.certified_error + result_.embree->rounding());
         for (Thing& thing : result_.things)
-            if (thing.patch) thing.error += result_.embree->rounding();
+            if (thing.patch) thing.error = rounding::up(thing.error + result_.embree->rounding());
         return std::move(result_);
     }
 

@@ -1,6 +1,7 @@
 // The real program on scenes that are wrong: exit 65, and file:line:column, what was found, what was expected.
 // The first line of every file in bad_scenes/ holds the place and the message.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 
@@ -75,6 +76,17 @@ TEST(BadScenes, ALongChainIsRefused) {
     std::string text = "{\"isoparm\":1,\"curves\":{";
     for (int k = 20'000; k > 0; --k) text += "\"c" + std::to_string(k) + "\":{\"type\":\"reverse\",\"curve\":\"c" + std::to_string(k - 1) + "\"},";
     expect_refused(text + "\"c0\":{\"type\":\"line\",\"points\":[[0,0,0],[1,0,0]]}}}", "chain of more than 100 definitions");
+}
+TEST(BadScenes, AnImportedFileMustBeARegularOne) {
+    const TemporaryFolder t;
+    std::filesystem::create_directory(t / "folder.bv");
+    ASSERT_EQ(::mkfifo((t / "pipe.bv").c_str(), 0600), 0);
+    for (const std::string name : {"folder", "pipe"}) {
+        write_all(t / "scene.json", "{\"isoparm\":1,\"surfaces\":{\"S\":{\"type\":\"file\",\"path\":\"" + name + ".bv\"}}}");
+        const Outcome o = run("info scene.json", t.path());
+        EXPECT_EQ(o.code, 65);
+        EXPECT_NE(o.err.find("scene.json:1:52: at $.surfaces.S.path: found a " + name), std::string::npos) << o.err;
+    }
 }
 TEST(BadScenes, AMissingSceneIsAnInputOutputError) {
     const Outcome o = run("info nothing.json");

@@ -34,6 +34,7 @@ TEST(Commands, HelpAndVersion) {
 TEST(Commands, UsageErrorsSuggest) {
     expect("rendr x", 64, "did you mean \"render\"?");
     expect("check x", 64, "not built yet");
+    for (const std::string c : {"check", "verify", "study", "diff"}) expect(c + " --help", 0, "isoparm " + c + ": not built yet");
     expect("info " + scene("coons") + " --jsn", 64, "did you mean \"--json\"?");
     expect("info", 64, "expected one scene");
     expect("info a b", 64, "expected one scene");
@@ -134,6 +135,73 @@ TEST(Commands, OutputThatCannotBeWrittenIsAnInputOutputError) {
         EXPECT_EQ(WEXITSTATUS(status), 4);
         EXPECT_NE(read_all(t / "err").find("standard output: writing failed"), std::string::npos);
     }
+}
+TEST(Commands, AnOutputNeverReplacesTheSceneOrAnotherOutput) {
+    const TemporaryFolder t;
+    const std::string text = read_all(source_folder() + "/scenes/coons.json");
+    write_all(t / "self.ply", text);
+    std::filesystem::create_symlink("self.ply", t / "link.png");
+    std::filesystem::create_hard_link(t / "self.ply", t / "hard.ply");
+    const auto refused = [&](const std::string& arguments) {
+        const Outcome o = run(arguments, t.path());
+        EXPECT_EQ(o.code, 64) << arguments << o.err;
+        EXPECT_NE(o.err.find(", expected another one"), std::string::npos) << o.err;
+    };
+    refused("tessellate self.ply -o self.ply");
+    refused("tessellate self.ply -o ./hard.ply");
+    refused("tessellate self.ply -o b.ply --report b.ply");
+    refused("tessellate self.ply -o b.ply --report '" + t / "../" + std::filesystem::path(t.path()).filename().string() + "/b.ply'");
+    refused("tessellate self.ply -o b.ply --report self.ply");
+    refused("render self.ply -o link.png");
+    EXPECT_EQ(t.files(), 3u);
+    EXPECT_EQ(read_all(t / "self.ply"), text);
+}
+TEST(Commands, FoldersAreCheckedBeforeTheWork) {
+    const TemporaryFolder t;
+    const std::string hopeless = "tessellate " + scene("coons") + " --tolerance 1e-9 --max-triangles 10";
+    expect(hopeless + " -o " + t / "no/m.ply", 4, "No such file or directory");
+    expect(hopeless + " -o " + t / "m.ply --report " + t / "no/r.json", 4, "No such file or directory");
+    expect("render " + scene("coons") + " -o " + t / "no/p.png", 4, "there is no folder");
+    EXPECT_EQ(t.files(), 0u);
+}
+TEST(Commands, TheReportGoesToStandardOutput) {
+    const TemporaryFolder t;
+    const Outcome o = run("tessellate " + scene("coons") + " --tolerance 1e-2 --report - -o " + t / "m.ply");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_GT(parsed(o.out)["triangles"].asInt(), 0);
+    EXPECT_EQ(t.files(), 1u);
+}
+TEST(Commands, RoundingToFloatIsPartOfTheCertifiedErrorOfStl) {
+    const TemporaryFolder t;
+    const auto report = [&](const std::string& name) { return parsed(run("tessellate " + scene("sphere") + " --tolerance 1e-3 --report - -o " + t / name).out); };
+    const Json::Value ply = report("m.ply"), stl = report("m.stl");
+    EXPECT_EQ(ply["format_rounding"].asDouble(), 0);
+    EXPECT_GT(stl["format_rounding"].asDouble(), 1e-8);
+    EXPECT_LT(stl["format_rounding"].asDouble(), 0x1p-24 * 1.8);
+    EXPECT_LE(stl["certified_error"].asDouble(), 1e-3);
+    EXPECT_EQ(stl["tolerance"].asDouble(), 1e-3);
+    expect("tessellate " + scene("sphere") + " --tolerance 1e-7 -o " + t / "fine.stl", 2, "write .ply or .obj");
+    EXPECT_EQ(t.files(), 2u);
+}
+TEST(Commands, ScenesThatCannotBeMeshedAreRefusedWithTheirPlace) {
+    const TemporaryFolder t;
+    const auto refused = [&](const std::string& text, const std::string& message, const std::string& command = "tessellate s.json -o m.ply") {
+        write_all(t / "s.json", text);
+        const Outcome o = run(command, t.path());
+        EXPECT_EQ(o.code, 65) << o.err;
+        EXPECT_EQ(o.err.rfind("isoparm: s.json:" + message, 0), 0u) << o.err;
+    };
+    const auto square = [](const std::string& x) { return "{\"isoparm\":1,\n\"surfaces\":{\"S\":{\"type\":\"bilinear\",\"points\":[[0,0,0],[" + x + ",0,0],[0," + x + ",0],[" + x + "," + x + ",0]]}}"; };
+    refused("{\"isoparm\":1, \"objects\":[]}", "1:25: at $.objects: found no surface that is drawn, expected one");
+    refused("{\"isoparm\":1}", "1:1: at $: found no surface that is drawn, expected one");
+    refused(square("0") + "}", "1:1: at $: found surfaces of size 0, expected");
+    for (const std::string command : {"tessellate s.json -o m.ply", "render s.json -o p.png"})
+        refused(square("1e300") + ",\n\"objects\":[{\"surface\":\"S\"}]}", "3:11: at $.objects: found surfaces of size inf, from (0, 0, 0) to (1e+300, 1e+300, 0), expected", command);
+}
+TEST(Commands, LimitNamesTheCageThatItRefuses) {
+    const TemporaryFolder t;
+    write_all(t / "q.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    expect("limit --scheme loop " + t / "q.obj", 65, "q.obj: face 0 (line 5): found 4 vertices, expected 3");
 }
 TEST(Commands, FiguresRendersEverySceneAndAContactSheet) {
     const TemporaryFolder t;

@@ -56,7 +56,7 @@ private:
 }  // namespace
 
 Curve make_isocurve(const Patch& patch, Along along, double at) {
-    if (patch.domain() == Domain::triangle) throw_input("an isocurve needs a surface on a rectangle, found one on a triangle");
+    if (patch.domain() == Domain::triangle) throw_input("found a surface on a triangle, expected one on a rectangle, which alone has isocurves");
     const Rect r = patch.rect();
     const double low = along == Along::u ? r.v0 : r.u0, high = along == Along::u ? r.v1 : r.u1;
     if (!(at >= low && at <= high))

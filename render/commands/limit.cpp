@@ -126,7 +126,13 @@ int run(const std::vector<std::string>& arguments) {
     };
 
     const Cage cage = read_cage_obj(read_text_file(path), path);
-    const LimitReport report = compare_limit(LimitSurface(cage, scheme), how);
+    const LimitReport report = [&] {
+        try {
+            return compare_limit(LimitSurface(cage, scheme), how);
+        } catch (const Error& e) {
+            throw Error(e.kind(), path + ": " + e.what());
+        }
+    }();
     if (const auto folder = options.value("-o")) write_report(*folder, report);
     if (options.has("--json")) std::cout << to_json(report);
     else print(path, cage, report);

@@ -100,15 +100,19 @@ std::string Options::word(const std::string& name, const std::vector<std::string
     return *text;
 }
 
-Scene Options::scene() const {
+const std::string& Options::scene_path() const {
     if (words_.size() != 1) fail("found " + std::to_string(words_.size()) + " file names, expected one scene");
+    return words_.front();
+}
+Scene Options::scene() const {
+    const std::string& path = scene_path();
     std::map<std::string, double> parameters;
     for (const std::string& set : values("--set")) {
         const std::size_t equals = set.find('=');
         if (equals == std::string::npos || equals == 0) fail("--set: found " + quoted(set) + ", expected PARAMETER=NUMBER");
         parameters[set.substr(0, equals)] = parse_number("--set " + set.substr(0, equals), set.substr(equals + 1));
     }
-    return load_scene(words_.front(), parameters);
+    return load_scene(path, parameters);
 }
 
 Tolerance parse_tolerance(const std::string& text) {
@@ -136,6 +140,13 @@ Composite find_patches(const Scene& scene, const std::string& name) {
         }
     }
     throw Error(ErrorKind::usage, "--surface: found " + quoted(name) + ", expected one of: " + listed(names) + did_you_mean(name, names));
+}
+
+double finite_diagonal(const Scene& scene, const Bounds& box) {
+    const double size = box.diagonal();
+    if (std::isfinite(size)) return size;
+    const auto text = [](const Point& p) { return "(" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + ")"; };
+    throw_input(scene.place + ": found surfaces of size " + to_text(size) + ", from " + text(box.low) + " to " + text(box.high) + ", expected a diagonal below 1e154");
 }
 
 }  // namespace isoparm

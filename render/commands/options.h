@@ -38,6 +38,8 @@ public:
     const std::vector<std::string>& words() const { return words_; }
     /// The scene named by the one word of the command line, with its --set parameters.
     Scene scene() const;
+    /// Its path; not one word is an error.
+    const std::string& scene_path() const;
     bool quiet() const { return has("--quiet"); }
     [[noreturn]] void fail(const std::string& message) const;
 
@@ -55,5 +57,8 @@ Tolerance parse_tolerance(const std::string& text);
 
 /// The patches of one surface ("S"), or one of them ("S/member"). Throws Error(usage) that lists what there is.
 Composite find_patches(const Scene& scene, const std::string& name);
+
+/// The diagonal of a box about what will be meshed. Throws Error(input) when it is beyond the numbers of the machine.
+double finite_diagonal(const Scene& scene, const Bounds& box);
 
 }  // namespace isoparm

@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <functional>
 
-#include "commands/options.h"
+#include "commands/output.h"
 #include "commands/render_options.h"
 #include "progress.h"
 
@@ -33,7 +33,9 @@ int run(const std::vector<std::string>& arguments) {
     const std::string output = options.required("-o", "the image file to write");
     RenderOptions how = read_render_options(options);
     check_image_path(output);
+    check_outputs(options, {{"-o", output}}, {{"SCENE", options.scene_path()}});
     const Scene scene = options.scene();
+    finite_diagonal(scene, bounding_box(scene));
     const Picture picture = [&] {
         ProgressBar bar("rendering", options.quiet());
         how.progress = std::ref(bar);

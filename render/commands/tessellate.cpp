@@ -2,17 +2,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <set>
 
-#include "commands/options.h"
+#include "commands/output.h"
 #include "error.h"
 #include "io/atomic_file.h"
 #include "io/mesh_files.h"
 #include "isoparm_version.h"
 #include "json_text.h"
 #include "progress.h"
+#include "scalar/interval.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -25,7 +28,8 @@ Triangulates surfaces so that no point of the mesh is farther than the tolerance
 surface farther than that from the mesh. This is proved, with every rounding error counted, for every triangle; edges
 that patches share are found and share their vertices.
 
--o MESH           .ply (binary, every double exact), .obj (exact decimals) or .stl (binary, float32)
+-o MESH           .ply (binary, every double exact), .obj (exact decimals) or .stl (binary, float32: what its rounding moves
+                  points by is counted; a tolerance below that ends with exit code 2)
 --surface S       one surface, or one patch of it, as in teapot/teapot#7; otherwise all surfaces that the scene draws
 --tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal; otherwise the scene's
 --measure M       geometric (default) or parametric. What is proved now is the parametric distance |S(u,v)-L(u,v)|,
@@ -34,7 +38,8 @@ that patches share are found and share their vertices.
 --vertices V      surface: vertices lie on the surface; free is not built yet
 --max-triangles N the budget, 20000000; beyond it the command ends with exit code 2 and says what was reached
 --report FILE     JSON: triangles, vertices, tolerance, measure, certified_error, sampled_error, boundary_loops,
-                  t_junctions, non_manifold_edges, seconds, surfaces (with the asymptotic optimum of triangles)
+                  t_junctions, non_manifold_edges, seconds, surfaces (with the asymptotic optimum of triangles),
+                  format_rounding (how far float32 moves points in .stl; part of certified_error); - is standard output
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
 --quiet           no messages; --threads N  at most N threads: the mesh is the same for every N
 )";
@@ -61,23 +66,54 @@ Selection select(const Scene& scene, const Options& options) {
     std::set<std::string> drawn;
     for (const SceneObject& o : scene.objects)
         if (o.kind == SceneObject::Kind::surface) drawn.insert(o.name);
-    if (drawn.empty()) throw_input(scene.path + ": found no surface that is drawn, expected one; name one with --surface");
+    if (drawn.empty()) throw_input(scene.place + ": found no surface that is drawn, expected one; name one with --surface");
     for (const Surface& s : scene.surfaces)
         if (drawn.count(s.name)) add_surface(all, s.name, s.patches, drawn.size() > 1);
     return all;
 }
 
-double absolute_tolerance(const Tolerance& t, const Composite& patches, const Options& options) {
+double absolute_tolerance(const Tolerance& t, double diagonal, const Options& options) {
     if (t.unit == Tolerance::Unit::pixels) options.fail("a tolerance in pixels needs a picture: give --tolerance in scene units or with rel");
-    return t.unit == Tolerance::Unit::relative ? t.value * bounding_box(patches).diagonal() : t.value;
+    return t.unit == Tolerance::Unit::relative ? t.value * diagonal : t.value;
+}
+
+std::string extension_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
 }
 
 /// Fails now rather than after the work.
 void check_output(const std::string& path, const Options& options) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = extension_of(path);
     if (extension == ".glb") options.fail("-o: .glb is not built yet; expected .ply, .obj or .stl");
     if (extension != ".ply" && extension != ".obj" && extension != ".stl") options.fail("-o: found " + quoted(path) + ", expected a name that ends in .ply, .obj or .stl");
+    std::vector<NamedFile> outputs{{"-o", path}};
+    if (const auto report = options.value("--report")) outputs.push_back({"--report", *report});
+    check_outputs(options, outputs, {{"SCENE", options.scene_path()}});
+}
+
+/// The largest distance by which float32 moves a vertex, which is the farthest that it moves any point of the mesh.
+double float_rounding(const Mesh& mesh) {
+    double most = 0;
+    for (const Point& p : mesh.positions) {
+        double moved[3];  // exact: the difference of a double and the float nearest to it
+        for (int axis = 0; axis < 3; ++axis) moved[axis] = std::fabs(p[axis] - static_cast<double>(static_cast<float>(p[axis])));
+        most = std::max(most, rounding::length_up(moved[0], moved[1], moved[2]));
+    }
+    return most;
+}
+
+/// At least that, before there is a mesh: 2^-24 of each coordinate, and a little for a box that is sampled.
+double float_rounding_bound(const Bounds& box) {
+    double most[3];
+    for (int axis = 0; axis < 3; ++axis) most[axis] = 0x1.0001p-24 * std::max(std::fabs(box.low[axis]), std::fabs(box.high[axis]));
+    return rounding::length_up(most[0], most[1], most[2]);
+}
+
+void add_rounding(Tessellation& t, double moved) {
+    t.certified_error = rounding::up(t.certified_error + moved);
+    for (SurfaceReport& s : t.surfaces) s.certified_error = rounding::up(s.certified_error + moved);
 }
 
 struct SurfaceSum {
@@ -107,9 +143,10 @@ std::vector<SurfaceSum> sums(const Tessellation& t, const Selection& selection) 
     return all;
 }
 
-void write_report(std::ostream& out, const Tessellation& t, const Selection& selection, const std::string& measure, double seconds_write) {
+void write_report(std::ostream& out, const Tessellation& t, const Selection& selection, const std::string& measure, double format_rounding, double seconds_write) {
     out << "{\"triangles\": " << t.mesh.triangle_count() << ", \"vertices\": " << t.mesh.positions.size() << ",\n \"tolerance\": " << json_text(t.tolerance)
         << ", \"measure\": " << json_text(measure) << ", \"certified_error\": " << json_text(t.certified_error) << ", \"sampled_error\": " << json_text(t.sampled_error)
+        << ", \"format_rounding\": " << json_text(format_rounding)
         << ",\n \"boundary_loops\": " << t.topology.boundary_loops << ", \"boundary_edges\": " << t.topology.boundary_edges << ", \"t_junctions\": " << t.topology.t_junctions
         << ", \"non_manifold_edges\": " << t.topology.non_manifold_edges << ", \"degenerate_triangles\": " << t.topology.degenerate_triangles
         << ",\n \"seconds\": {\"tessellate\": " << json_text(t.seconds_tessellate) << ", \"sample\": " << json_text(t.seconds_sample) << ", \"write\": " << json_text(seconds_write)
@@ -141,25 +178,38 @@ int run(const std::vector<std::string>& arguments) {
 
     const Scene scene = options.scene();
     const Selection selection = select(scene, options);
+    const Bounds box = bounding_box(selection.patches);
+    const double tolerance = absolute_tolerance(given ? *given : scene.tolerance, finite_diagonal(scene, box), options);
+    if (!(tolerance > 0)) throw_input(scene.place + ": found surfaces of size 0, expected some that a relative tolerance can be taken of");
+    const bool stl = extension_of(output) == ".stl";
+    const double reserved = stl ? float_rounding_bound(box) : 0;
+    if (!(reserved < tolerance)) {
+        throw Error(ErrorKind::budget, scene.path + ": the tolerance " + to_text(tolerance) + " cannot be kept in .stl, whose float32 coordinates move points by up to " +
+                                           to_text(reserved) + "; write .ply or .obj");
+    }
     TessellationOptions how;
-    how.tolerance = absolute_tolerance(given ? *given : scene.tolerance, selection.patches, options);
-    if (!(how.tolerance > 0)) throw_input(scene.path + ": found a surface of size 0, expected one that a relative tolerance can be taken of");
+    how.tolerance = tolerance - reserved;
     if (const auto most = options.integer("--max-triangles", 1, 2'000'000'000)) how.max_triangles = static_cast<std::size_t>(*most);
-    const auto result = [&] {
+    Tessellation result = [&] {
         ProgressBar bar("tessellating", options.quiet());
         how.progress = std::ref(bar);
         return tessellate(selection.patches, how);
     }();
-    if (!(result.certified_error <= how.tolerance) || result.topology.t_junctions > 0 || result.topology.non_manifold_edges > 0) {
+    const double moved = stl ? float_rounding(result.mesh) : 0;
+    if (stl) add_rounding(result, moved);
+    result.tolerance = tolerance;
+    if (!(result.certified_error <= tolerance) || result.topology.t_junctions > 0 || result.topology.non_manifold_edges > 0) {
         throw Error(ErrorKind::budget, scene.path + ": the mesh is not what was asked for: certified error " + to_text(result.certified_error) + " at tolerance " +
-                                           to_text(how.tolerance) + ", " + std::to_string(result.topology.t_junctions) + " T-junctions, " +
+                                           to_text(tolerance) + ", " + std::to_string(result.topology.t_junctions) + " T-junctions, " +
                                            std::to_string(result.topology.non_manifold_edges) + " non-manifold edges; nothing was written");
     }
     const auto start = std::chrono::steady_clock::now();
     write_mesh(output, result.mesh, mesh_comment(scene, result));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (const auto report = options.value("--report")) {
-        write_atomically(*report, [&](std::ostream& out) { write_report(out, result, selection, measure, seconds); });
+        const auto write = [&](std::ostream& out) { write_report(out, result, selection, measure, moved, seconds); };
+        if (*report == "-") write(std::cout);
+        else write_atomically(*report, write);
     }
     if (!options.quiet()) {
         std::fprintf(stderr, "%s: %zu triangles, %zu vertices, certified error %.3g (tolerance %.3g), %.2f s\n", output.c_str(), result.mesh.triangle_count(),

@@ -1,0 +1,19 @@
+// commands/output.h -- the files that a command will write, checked before there is any work to lose.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "commands/options.h"
+
+namespace isoparm {
+
+/// One file on the command line: the option that named it ("-o"; "SCENE" for the one that is read) and its path.
+struct NamedFile {
+    std::string option, path;
+};
+
+/// Every output is another file than the inputs and the other outputs, else Error(usage); its folder exists and may be
+/// written, and it is no folder itself, else Error(io). "-", standard output, is not looked at.
+void check_outputs(const Options& options, const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
+
+}  // namespace isoparm
