@@ -385,8 +385,6 @@ bool Refinement::mark_coincident_edges() {
     bool any = false;
     each([&](PatchEdge& edge, std::uint64_t key) {
         if (count[key] <= 2) return;
-        // Three patches that share one rim: that is how the surface is.
-        if (edge.rim_node != kNone && int(topology_.rims[rim_nodes_[edge.rim_node].rim].uses.size()) >= count[key]) return;
         mark(edge);
         any = true;
     });

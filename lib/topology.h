@@ -2,7 +2,8 @@
 //
 // An edge is cut at the corners and breaks that lie on it, its own and those of other patches; a piece between two such
 // nodes is a rim. Rims that coincide, in the same or in the opposite direction, in the same parametrisation or not, are
-// one rim with several uses. A collapsed rim is one point (a pole or apex).
+// one rim with two uses; where more patches meet, they are paired, each pair with a rim of its own, so that the mesh is a
+// manifold. A collapsed rim is one point (a pole or apex).
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -21,7 +22,7 @@ struct RimUse {
 struct Rim {
     std::uint32_t a = 0, b = 0;  // nodes
     bool collapsed = false;
-    std::vector<RimUse> uses;    // uses[0] owns the curve: vertices are evaluated by it
+    std::vector<RimUse> uses;    // one or two; uses[0] owns the curve: vertices are evaluated by it
 };
 /// One rim along an edge of a patch, in the edge's own direction.
 struct EdgeRim {
