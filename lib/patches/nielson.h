@@ -1,0 +1,15 @@
+// patches/nielson.h -- Nielson's side-vertex interpolants of boundary curves with cross derivatives (C1) or normals (G1) (Nielson
+// 1979, 1987; formula sheet B6, B7).
+#pragma once
+#include <array>
+
+#include "patch.h"
+
+namespace isoparm {
+/// cross as in make_bbg_c1. `ray` 1 to 3: the interpolant T_k along the rays of vertex k alone; 0: the whole, with the weights
+/// v^2 w^2 / (u^2 v^2 + v^2 w^2 + w^2 u^2).
+Patch make_nielson_c1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross, int ray = 0);
+/// normals[k](t) is normal to the surface along E_k, of any length but 0; at a vertex those of the two edges are parallel. The tangent
+/// plane is interpolated along the boundary. Throws IncompatibleError also where a normal is not normal to its edge at the ends.
+Patch make_nielson_g1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& normals, int ray = 0);
+}
