@@ -46,12 +46,13 @@ double simplex_maximum(double a, double b, double c) {
     if (!(std::min({a, b, c}) > 0) || !std::isfinite(largest)) return std::isfinite(largest) ? edge : kInfinity;
     const double slack = -1e-12 * largest;
     if (a + c - b < slack || a + b - c < slack || b + c - a < slack) return edge;
-    // The form grows with its coefficients: lifting tiny ones keeps D away from cancellation and costs 1e-7 at most.
-    const Interval A(std::max(a, 1e-7 * largest)), B(std::max(b, 1e-7 * largest)), C(std::max(c, 1e-7 * largest));
-    const Interval D = Interval(2) * (A * B + B * C + C * A) - (A * A + B * B + C * C);
+    // The form grows with its coefficients: lifting tiny ones to 1e-7 of the largest keeps D above 3e-7 of its square
+    // and costs 1e-7 at most; rounding errors of D, at most 16 units of 1.1e-16 of that square, are below 1e-8 of it.
+    a = std::max(a / largest, 1e-7), b = std::max(b / largest, 1e-7), c = std::max(c / largest, 1e-7);
+    const double D = 2 * (a * b + b * c + c * a) - (a * a + b * b + c * c);
     const double third = up(largest / 3);
-    if (!(D.lo > 0)) return third;
-    return std::max(edge, std::min(third, (A * B * C / D).hi));
+    if (!(D > 3e-7)) return third;
+    return std::max(edge, std::min(third, largest * (a * b * c / D) * (1 + 2e-8)));
 }
 
 TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, const std::array<Point, 3>& points) {
@@ -128,6 +129,20 @@ TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, c
         if (score[k] > best * (1 + 1e-9) || (score[k] >= best * (1 - 1e-9) && size(k) > size(result.worst_edge) * (1 + 1e-9))) result.worst_edge = k;
     }
     return result;
+}
+
+double geometric_bound(const TriangleBound& t, const std::array<const TriangleBound*, 3>& neighbours) {
+    if (!t.quiet) return t.parametric;
+    double most = t.normal;
+    for (int k = 0; k < 3; ++k) {
+        const TriangleBound* other = neighbours[k];
+        const double apart = other && other->quiet ? (length(t.unit - other->unit) + t.tilt + other->tilt) * (1 + 1e-14) + 1e-15 : 2;
+        const double cosine = 1 - 0.5 * apart * apart;  // at most that of the angle between the planes
+        // Over the neighbour, or where there is none, over this triangle alone.
+        const double beyond = cosine >= 0.9 ? std::max(t.normal, other->normal / cosine) + t.across[k] * (apart / cosine) : std::hypot(t.normal, t.across[k]);
+        most = std::max(most, beyond * (1 + 1e-14));
+    }
+    return std::min(t.parametric, most);
 }
 
 }  // namespace isoparm

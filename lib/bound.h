@@ -1,22 +1,44 @@
-// bound.h -- what is proved about a patch over a triangle of its domain. docs/certificates.md has the proof.
+// bound.h -- what is proved about a patch over a triangle of its domain. docs/certificates.md has the proofs.
 #pragma once
 #include <array>
+#include <limits>
 
 #include "patch.h"
 
 namespace isoparm {
 
-struct TriangleBound {
-    /// At least |S(p) - L(p)| for every p of the triangle, L the linear interpolant of the exact S at its corners;
-    /// rounded outward. Infinite when nothing could be proved.
-    double parametric = 0;
-    /// Edge (corner k, k+1) whose bisection gains most.
-    int worst_edge = 0;
+/// Which distance is proved: of points at equal parameters, or between the two sets, both ways.
+enum class Measure { parametric, geometric };
+
+struct CornerData {
+    std::array<Vec2, 3> uv;       // parameters in the domain, counter-clockwise or all clockwise
+    std::array<Point, 3> points;  // mesh vertices
+    double slack = 0;             // at least the distance of each from S at its parameters
 };
 
-/// `corners` are parameters in the domain; `points` the positions there (used only to choose worst_edge where derivatives
-/// have no bound). The triangle must not cross a break of the patch.
+/// L is the linear interpolant of the exact S at the corners, d = S - L, n the unit normal of L.
+struct TriangleBound {
+    static constexpr double none = std::numeric_limits<double>::infinity();
+
+    double parametric = none;            // at least |d| everywhere; infinite when nothing could be proved
+    double normal = none;                // at least |n.d| everywhere; infinite for triangles that are not quiet
+    std::array<double, 3> across{};      // at least |(n x e_k).d| on edge k, e_k its direction
+    Point unit;                          // n up to tilt
+    double tilt = none;
+    bool quiet = false;                  // S bends so little that it lies over L as a graph, and lenses around its edges do not meet
+    int worst_edge = 0;                  // edge (corner k, k+1) whose bisection gains most
+    int worst_across = 0;                // the same for the part of d along the triangle's plane
+
+    /// What has to be small for the measure.
+    double own(Measure measure) const { return measure == Measure::geometric && quiet ? std::min(parametric, normal) : parametric; }
+};
+
+/// By an enclosure over the triangle's own box: parametric only. The triangle must not cross a break of the patch.
 TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& corners, const std::array<Point, 3>& points);
+
+/// The geometric bound of a triangle from its own numbers and those of the neighbours in the same patch over edge k; nullptr
+/// where there is none: the edge is open, or another patch lies behind it.
+double geometric_bound(const TriangleBound& t, const std::array<const TriangleBound*, 3>& neighbours);
 
 /// An upper bound of max over the simplex of a l0 l1 + b l1 l2 + c l2 l0, not below 0, exact but for rounding.
 double simplex_maximum(double a, double b, double c);

@@ -32,6 +32,9 @@ struct Mesh {
     }
 };
 
+/// From p to the nearest point of the triangle a, b, c, which may be a segment or a point.
+double distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
+
 /// Counted with integers: what must hold for the mesh to be watertight.
 struct MeshTopology {
     std::size_t boundary_edges = 0, boundary_loops = 0, non_manifold_edges = 0, t_junctions = 0, degenerate_triangles = 0;

@@ -23,6 +23,19 @@ double along_range(double from, double to, const std::vector<double>& breaks, do
 
 }  // namespace
 
+std::vector<double> Patch::lines_u() const {
+    std::vector<double> lines = breaks_u();
+    lines.insert(lines.begin(), rect().u0);
+    lines.push_back(rect().u1);
+    return lines;
+}
+std::vector<double> Patch::lines_v() const {
+    std::vector<double> lines = breaks_v();
+    lines.insert(lines.begin(), rect().v0);
+    lines.push_back(rect().v1);
+    return lines;
+}
+
 Vec3<Interval> Patch::enclose_point(double u, double v) const {
     // On a break the cells of both sides count: their values agree only up to rounding.
     const auto widened = [](double t, const std::vector<double>& breaks) {

@@ -62,6 +62,9 @@ public:
     Rect rect() const { return impl_->rect(); }
     std::vector<double> breaks_u() const { return impl_->breaks_u(); }
     std::vector<double> breaks_v() const { return impl_->breaks_v(); }
+    /// The breaks with the ends of the domain: where cells begin and end.
+    std::vector<double> lines_u() const;
+    std::vector<double> lines_v() const;
     Point point(double u, double v) const { return impl_->point(u, v); }
     PointJet jet(double u, double v) const { return impl_->jet(u, v); }
     PointFrame frame(double u, double v) const { return impl_->frame(u, v); }

@@ -1,14 +1,13 @@
 #include "refine.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <unordered_map>
 #include <unordered_set>
 
-#include "bound.h"
 
 namespace isoparm {
 namespace {
@@ -38,19 +37,17 @@ std::uint64_t mesh_edge(const PatchMesh& mesh, const PatchEdge& e) {
     return (std::uint64_t(a) << 32) | b;
 }
 
-/// Does the triangle name a mesh vertex twice? Such triangles are segments and not part of the mesh.
-bool left_out(const PatchMesh& mesh, const PatchTriangle& t) {
-    const auto a = mesh.vertex[t.corner[0]], b = mesh.vertex[t.corner[1]], c = mesh.vertex[t.corner[2]];
-    return a == b || b == c || c == a;
-}
-
 }  // namespace
 
-Refinement::Refinement(const Composite& surface, const Topology& topology)
-    : surface_(surface), topology_(topology), positions_(topology.nodes), patches_(surface.size()) {
+double PatchMesh::slack_of(const PatchTriangle& t) const { return std::max({slack[t.corner[0]], slack[t.corner[1]], slack[t.corner[2]]}); }
+
+Refinement::Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure)
+    : surface_(surface), topology_(topology), tolerance_(tolerance), measure_(measure), positions_(topology.nodes), shared_(topology.nodes.size(), 1),
+      patches_(surface.size()) {
     for (std::uint32_t r = 0; r < topology.rims.size(); ++r) {
-        const Rim& rim = topology.rims[r];
-        rim_nodes_.push_back({r, 0, 1, rim.a, rim.b, kNone, false});
+        RimNode node;
+        node.rim = r, node.a = topology.rims[r].a, node.b = topology.rims[r].b;
+        rim_nodes_.push_back(node);
     }
     // Vertices that breaks make inside a patch are numbered patch by patch, so this loop is serial.
     for (std::uint32_t m = 0; m < surface.size(); ++m) build_patch(m);
@@ -77,102 +74,6 @@ Vec2 Refinement::on_rim(const RimUse& use, double fraction, const Point& positio
     return patch.edge_point(use.edge, t);
 }
 
-/// The first triangulation: the cells between breaks, each cut along its shorter diagonal, or into a fan about its middle
-/// when other patches put nodes on its sides.
-void Refinement::build_patch(std::uint32_t member) {
-    const Patch& patch = surface_[member].patch;
-    PatchMesh& mesh = patches_[member];
-    std::map<std::pair<double, double>, std::uint32_t> corners;
-    const auto corner = [&](const Vec2& p, std::uint32_t vertex) {
-        const auto [it, fresh] = corners.try_emplace({p.x, p.y}, std::uint32_t(mesh.uv.size()));
-        if (fresh) {
-            mesh.uv.push_back(p);
-            if (vertex == kNone) {
-                vertex = std::uint32_t(positions_.size());
-                positions_.push_back(patch.point(p.x, p.y));
-            }
-            mesh.vertex.push_back(vertex);
-        }
-        return it->second;
-    };
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
-    const auto edge = [&](std::uint32_t a, std::uint32_t b) {
-        const auto [it, fresh] = known.try_emplace(std::minmax(a, b), std::uint32_t(mesh.edges.size()));
-        if (fresh) mesh.edges.push_back({a, b});
-        return it->second;
-    };
-    const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-        PatchTriangle t;
-        t.corner = {a, b, c};
-        t.edge = {edge(a, b), edge(b, c), edge(c, a)};
-        mesh.triangles.push_back(t);
-    };
-    // Rims along the four (three) edges.
-    std::array<std::vector<std::uint32_t>, 4> side;  // corners along each edge, in its direction
-    for (int k = 0; k < patch.edges(); ++k)
-        for (const EdgeRim& er : topology_.edges[member][k]) {
-            const Rim& rim = topology_.rims[er.rim];
-            const RimUse& use = rim.uses[er.use];
-            const auto a = corner(patch.edge_point(k, use.t0), rim.a), b = corner(patch.edge_point(k, use.t1), rim.b);
-            PatchEdge e{a, b, kNone, er.rim, er.use, false, false};
-            known[std::minmax(a, b)] = std::uint32_t(mesh.edges.size());
-            mesh.edges.push_back(e);
-            if (side[k].empty()) side[k].push_back(er.reversed ? b : a);
-            side[k].push_back(er.reversed ? a : b);
-        }
-    const auto fan = [&](const std::vector<std::uint32_t>& polygon, const Vec2& centre) {
-        const auto c = corner(centre, kNone);
-        for (std::size_t i = 0; i < polygon.size(); ++i) triangle(polygon[i], polygon[(i + 1) % polygon.size()], c);
-    };
-    if (patch.domain() == Domain::triangle) {
-        std::vector<std::uint32_t> polygon;  // C -> A -> B -> C
-        for (int k : {1, 2, 0}) polygon.insert(polygon.end(), side[k].begin(), side[k].end() - 1);
-        if (polygon.size() == 3) triangle(polygon[0], polygon[1], polygon[2]);
-        else fan(polygon, {1.0 / 3, 1.0 / 3});
-        return;
-    }
-    const Rect r = patch.rect();
-    std::vector<double> us{r.u0}, vs{r.v0};
-    for (double b : patch.breaks_u()) us.push_back(b);
-    for (double b : patch.breaks_v()) vs.push_back(b);
-    us.push_back(r.u1), vs.push_back(r.v1);
-    // Corners of side k from parameter `from` to `to` (of u or v), both included, in that direction.
-    const auto piece = [&](int k, double from, double to, std::vector<std::uint32_t>& out) {
-        std::vector<std::uint32_t> found;
-        for (auto c : side[k]) {
-            const double t = k == 0 || k == 2 ? mesh.uv[c].x : mesh.uv[c].y;
-            if (t >= std::min(from, to) && t <= std::max(from, to)) found.push_back(c);
-        }
-        if (from > to) std::reverse(found.begin(), found.end());
-        out.insert(out.end(), found.begin(), found.end() - 1);
-    };
-    for (std::size_t i = 0; i + 1 < us.size(); ++i)
-        for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
-            const double u0 = us[i], u1 = us[i + 1], v0 = vs[j], v1 = vs[j + 1];
-            std::vector<std::uint32_t> polygon;
-            if (j == 0) piece(0, u0, u1, polygon);
-            else polygon.push_back(corner({u0, v0}, kNone));
-            if (i + 2 == us.size()) piece(1, v0, v1, polygon);
-            else polygon.push_back(corner({u1, v0}, kNone));
-            if (j + 2 == vs.size()) piece(2, u1, u0, polygon);
-            else polygon.push_back(corner({u1, v1}, kNone));
-            if (i == 0) piece(3, v1, v0, polygon);
-            else polygon.push_back(corner({u0, v1}, kNone));
-            if (polygon.size() != 4) {
-                fan(polygon, {0.5 * u0 + 0.5 * u1, 0.5 * v0 + 0.5 * v1});
-                continue;
-            }
-            const auto at = [&](int k) { return positions_[mesh.vertex[polygon[k]]]; };
-            if (distance(at(0), at(2)) <= distance(at(1), at(3)) * (1 + 1e-9)) {
-                triangle(polygon[0], polygon[1], polygon[2]);
-                triangle(polygon[0], polygon[2], polygon[3]);
-            } else {
-                triangle(polygon[1], polygon[2], polygon[3]);
-                triangle(polygon[1], polygon[3], polygon[0]);
-            }
-        }
-}
-
 void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
     PatchMesh& mesh = patches_[member];
     mesh.slack.resize(mesh.uv.size());
@@ -185,49 +86,97 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
     });
 }
 
-bool Refinement::bound_and_mark(double tolerance) {
-    std::vector<std::vector<std::uint32_t>> open(patches_.size());
-    for (std::size_t m = 0; m < patches_.size(); ++m)
-        for (std::uint32_t i = 0; i < patches_[m].triangles.size(); ++i)
-            if (patches_[m].triangles[i].bound < 0) open[m].push_back(i);
-    std::vector<std::vector<char>> worst(patches_.size());
-    for (std::size_t m = 0; m < open.size(); ++m) worst[m].assign(open[m].size(), 0);
-    for_all(patches_.size(), [&](std::size_t m) { return open[m].size(); }, [&](std::size_t m, std::size_t i) {
-        PatchMesh& mesh = patches_[m];
-        PatchTriangle& t = mesh.triangles[open[m][i]];
-        std::array<Vec2, 3> uv;
-        std::array<Point, 3> points;
-        double slack = 0;
-        for (int k = 0; k < 3; ++k) {
-            uv[k] = mesh.uv[t.corner[k]];
-            points[k] = positions_[mesh.vertex[t.corner[k]]];
-            slack = std::max(slack, mesh.slack[t.corner[k]]);
-        }
-        const TriangleBound b = bound_triangle(surface_[m].patch, uv, points);
-        t.bound = rounding::up(b.parametric + slack);
-        worst[m][i] = char(b.worst_edge);
+void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t) const {
+    CornerData data;
+    for (int k = 0; k < 3; ++k) data.uv[k] = mesh.uv[t.corner[k]], data.points[k] = positions_[mesh.vertex[t.corner[k]]];
+    data.slack = mesh.slack_of(t);
+    t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_);
+}
+
+bool Refinement::bound_and_mark() {
+    for_all(patches_.size(), [&](std::size_t m) { return patches_[m].fresh.size(); }, [&](std::size_t m, std::size_t i) {
+        bound(patches_[m], std::uint32_t(m), patches_[m].triangles[patches_[m].fresh[i]]);
     });
     bool done = true;
-    for (std::size_t m = 0; m < patches_.size(); ++m) {
-        PatchMesh& mesh = patches_[m];
+    predicted_ = double(triangle_count());
+    worst_bound_ = 0, unbounded_ = 0;
+    for (auto& mesh : patches_) {
         const auto mark_to_split = [&](std::uint32_t e) {
-            mark(mesh.edges[e]);
+            mark(mesh, e);
             done = false;
         };
-        for (std::size_t i = 0; i < open[m].size(); ++i) {
-            const PatchTriangle& t = mesh.triangles[open[m][i]];
-            if (!(t.bound <= tolerance)) mark_to_split(t.edge[worst[m][i]]);
+        for (const auto i : mesh.fresh) {
+            const PatchTriangle& t = mesh.triangles[i];
+            const double bound = rounding::up(t.proof.own(measure_) + mesh.slack_of(t));
+            if (!(bound <= tolerance_)) {
+                mark_to_split(t.edge[t.proof.worst_edge]);
+                unbounded_ += !std::isfinite(bound);
+                predicted_ += std::isfinite(bound) ? bound / tolerance_ - 1 : 0;
+                worst_bound_ = std::max(worst_bound_, bound);
+            }
             for (auto e : t.edge)
                 if (mesh.vertex[mesh.edges[e].a] == mesh.vertex[mesh.edges[e].b] && !collapsed(mesh.edges[e])) mark_to_split(e);
         }
+        mesh.fresh.clear();
     }
     return done;
 }
 
+double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const {
+    const PatchTriangle& t = mesh.triangles[triangle];
+    double slack = mesh.slack_of(t);
+    if (measure_ == Measure::parametric || !t.proof.quiet) return rounding::up(t.proof.parametric + slack);
+    std::array<const TriangleBound*, 3> neighbours{};
+    for (int k = 0; k < 3; ++k) {
+        const auto& side = mesh.edges[t.edge[k]].side;
+        const auto other = side[0] == triangle ? side[1] : side[0];
+        if (other == kNone || mesh.left_out(mesh.triangles[other])) continue;
+        neighbours[k] = &mesh.triangles[other].proof;
+        slack = std::max(slack, mesh.slack_of(mesh.triangles[other]));
+    }
+    return rounding::up(geometric_bound(t.proof, neighbours) + slack);
+}
+
+double Refinement::worst_bound_of(std::size_t member) const {
+    const PatchMesh& mesh = patches_[member];
+    return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 1024), 0.0, [&](const auto& range, double worst) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) worst = std::max(worst, bound_of(mesh, std::uint32_t(i)));
+        return worst;
+    }, [](double a, double b) { return std::max(a, b); });
+}
+
+bool Refinement::mark_with_neighbours() {
+    if (measure_ == Measure::parametric) return false;
+    std::vector<std::vector<char>> fails(patches_.size());
+    for (std::size_t m = 0; m < patches_.size(); ++m) fails[m].assign(patches_[m].triangles.size(), 0);
+    for_all(patches_.size(), [&](std::size_t m) { return fails[m].size(); }, [&](std::size_t m, std::size_t i) {
+        fails[m][i] = !(bound_of(patches_[m], std::uint32_t(i)) <= tolerance_);
+    });
+    bool any = false;
+    for (std::size_t m = 0; m < patches_.size(); ++m)
+        for (std::size_t i = 0; i < fails[m].size(); ++i)
+            if (fails[m][i]) {
+                const PatchTriangle& t = patches_[m].triangles[i];
+                mark(patches_[m], t.edge[t.proof.worst_across]);
+                any = true;
+            }
+    return any;
+}
+
+void Refinement::mark(PatchMesh& mesh, std::uint32_t edge) {
+    PatchEdge& e = mesh.edges[edge];
+    if (e.rim_node == kNone) {
+        if (!e.marked) mesh.marked.push_back(edge);
+        e.marked = true;
+    } else if (!rim_nodes_[e.rim_node].marked) {
+        rim_nodes_[e.rim_node].marked = true;
+        marked_rims_.push_back(e.rim_node);
+    }
+}
+
 void Refinement::split_rims() {
-    const std::size_t n = rim_nodes_.size();
-    for (std::size_t i = 0; i < n; ++i) {
-        if (!rim_nodes_[i].marked || rim_nodes_[i].child != kNone) continue;
+    std::sort(marked_rims_.begin(), marked_rims_.end());
+    for (const auto i : marked_rims_) {
         const RimNode node = rim_nodes_[i];
         const Rim& rim = topology_.rims[node.rim];
         const double f = 0.5 * node.f0 + 0.5 * node.f1;
@@ -237,64 +186,85 @@ void Refinement::split_rims() {
             const Vec2 p = surface_[owner.member].patch.edge_point(owner.edge, owner.t0 + f * (owner.t1 - owner.t0));
             middle = std::uint32_t(positions_.size());
             positions_.push_back(surface_[owner.member].patch.point(p.x, p.y));
+            shared_.push_back(1);
         }
         rim_nodes_[i].child = std::uint32_t(rim_nodes_.size());
-        rim_nodes_.push_back({node.rim, node.f0, f, node.a, middle, kNone, false});
-        rim_nodes_.push_back({node.rim, f, node.f1, middle, node.b, kNone, false});
+        RimNode low, high;
+        low.rim = high.rim = node.rim;
+        low.f0 = node.f0, low.f1 = high.f0 = f, high.f1 = node.f1;
+        low.a = node.a, low.b = high.a = middle, high.b = node.b;
+        rim_nodes_.push_back(low);
+        rim_nodes_.push_back(high);
+        for (std::size_t use = 0; use < rim.uses.size(); ++use) patches_[rim.uses[use].member].marked.push_back(node.edge[use]);
     }
+    marked_rims_.clear();
 }
 
 /// Bisects the marked edges of a patch. Vertices inside it stay kNone here: split_marked() numbers them.
 void Refinement::split_edges(std::uint32_t member) {
     PatchMesh& mesh = patches_[member];
     const Patch& patch = surface_[member].patch;
-    const std::uint32_t n = std::uint32_t(mesh.edges.size());
-    for (std::uint32_t i = 0; i < n; ++i) {
+    std::sort(mesh.marked.begin(), mesh.marked.end());
+    for (const auto i : mesh.marked) {
         const PatchEdge e = mesh.edges[i];
-        const RimNode* node = e.rim_node == kNone ? nullptr : &rim_nodes_[e.rim_node];
-        if (e.child != kNone || !(node ? node->child != kNone : e.marked)) continue;
-        const auto middle = std::uint32_t(mesh.uv.size());
-        PatchEdge low{e.a, middle, kNone, kNone, e.use, e.reversed, false}, high{middle, e.b, kNone, kNone, e.use, e.reversed, false};
-        if (node) {
-            const RimUse& use = topology_.rims[node->rim].uses[e.use];
+        const auto middle = std::uint32_t(mesh.uv.size()), child = std::uint32_t(mesh.edges.size());
+        PatchEdge low, high;
+        low.a = e.a, low.b = high.a = middle, high.b = e.b;
+        low.use = high.use = e.use, low.reversed = high.reversed = e.reversed;
+        if (e.rim_node != kNone) {
+            const RimNode& node = rim_nodes_[e.rim_node];
+            const RimUse& use = topology_.rims[node.rim].uses[e.use];
             const double ta = edge_parameter(patch, use.edge, mesh.uv[e.a]), tb = edge_parameter(patch, use.edge, mesh.uv[e.b]);
-            const std::uint32_t vertex = rim_nodes_[node->child].b;
-            mesh.uv.push_back(on_rim(use, 0.5 * node->f0 + 0.5 * node->f1, positions_[vertex], std::min(ta, tb), std::max(ta, tb)));
+            const std::uint32_t vertex = rim_nodes_[node.child].b;
+            mesh.uv.push_back(on_rim(use, 0.5 * node.f0 + 0.5 * node.f1, positions_[vertex], std::min(ta, tb), std::max(ta, tb)));
             mesh.vertex.push_back(vertex);
-            low.rim_node = e.reversed ? node->child + 1 : node->child;
-            high.rim_node = e.reversed ? node->child : node->child + 1;
+            low.rim_node = e.reversed ? node.child + 1 : node.child;
+            high.rim_node = e.reversed ? node.child : node.child + 1;
+            rim_nodes_[low.rim_node].edge[e.use] = child, rim_nodes_[high.rim_node].edge[e.use] = child + 1;
         } else {
             const Vec2 &a = mesh.uv[e.a], &b = mesh.uv[e.b];
             mesh.uv.push_back({0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y});
             mesh.vertex.push_back(kNone);
         }
-        mesh.edges[i].child = std::uint32_t(mesh.edges.size());
+        mesh.edges[i].child = child;
         mesh.edges.push_back(low);
         mesh.edges.push_back(high);
     }
 }
 
-void Refinement::split_triangles(std::uint32_t member) {
+/// Replaces the triangles beside marked edges by two, three or four; edges from first_edge on are new in this round.
+void Refinement::split_triangles(std::uint32_t member, std::uint32_t first_edge) {
     PatchMesh& mesh = patches_[member];
-    const std::size_t n = mesh.triangles.size();
     // The half of edge e that starts at corner c.
     const auto half = [&](std::uint32_t e, std::uint32_t c) { return mesh.edges[e].a == c ? mesh.edges[e].child : mesh.edges[e].child + 1; };
     const auto middle = [&](std::uint32_t e) { return mesh.edges[mesh.edges[e].child].b; };
     const auto add_edge = [&](std::uint32_t a, std::uint32_t b) {
-        mesh.edges.push_back({a, b});
+        mesh.edges.emplace_back();
+        mesh.edges.back().a = a, mesh.edges.back().b = b;
         return std::uint32_t(mesh.edges.size() - 1);
     };
     const auto at = [&](std::uint32_t c) { return positions_[mesh.vertex[c]]; };
-    for (std::size_t i = 0; i < n; ++i) {
+    std::vector<std::uint32_t> beside;
+    for (const auto e : mesh.marked)
+        for (const auto t : mesh.edges[e].side)
+            if (t != kNone) beside.push_back(t);
+    std::sort(beside.begin(), beside.end());
+    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+    for (const auto i : beside) {
         PatchTriangle t = mesh.triangles[i];
         int cut = 0;
         for (auto e : t.edge) cut += mesh.edges[e].child != kNone;
-        if (cut == 0) continue;
         auto put = [&, first = true](std::array<std::uint32_t, 3> c, std::array<std::uint32_t, 3> e) mutable {
-            PatchTriangle fresh;
-            fresh.corner = c, fresh.edge = e;
-            if (first) mesh.triangles[i] = fresh;
-            else mesh.triangles.push_back(fresh);
+            PatchTriangle part;
+            part.corner = c, part.edge = e, part.cell = t.cell;
+            const auto index = first ? i : std::uint32_t(mesh.triangles.size());
+            for (const auto k : e) {
+                auto& side = mesh.edges[k].side;
+                side[k < first_edge ? side[0] != i : side[0] != kNone] = index;
+            }
+            if (first) mesh.triangles[i] = part;
+            else mesh.triangles.push_back(part);
+            mesh.fresh.push_back(index);
             first = false;
         };
         // Turn the triangle so that edge 0 is cut, and with two cuts edge 1 too.
@@ -338,8 +308,10 @@ void Refinement::split_triangles(std::uint32_t member) {
 void Refinement::split_marked() {
     split_rims();
     std::vector<std::size_t> first_corner(patches_.size());
+    std::vector<std::uint32_t> first_edge(patches_.size());
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
         first_corner[m] = patches_[m].uv.size();
+        first_edge[m] = std::uint32_t(patches_[m].edges.size());
         split_edges(std::uint32_t(m));
     });
     // New vertices inside the patches are numbered in the order of patches and edges, whatever thread made them.
@@ -350,42 +322,48 @@ void Refinement::split_marked() {
         first_vertex[m + 1] = first_vertex[m] + count;
     }
     positions_.resize(first_vertex.back());
+    shared_.resize(first_vertex.back(), 0);
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
-        PatchMesh& mesh = patches_[m];
-        std::vector<double> u, v;
-        std::size_t next = first_vertex[m];
-        for (std::size_t i = first_corner[m]; i < mesh.uv.size(); ++i) {
-            if (mesh.vertex[i] != kNone) continue;
-            mesh.vertex[i] = std::uint32_t(next++);
-            u.push_back(mesh.uv[i].x);
-            v.push_back(mesh.uv[i].y);
-        }
-        surface_[m].patch.points(u.size(), u.data(), v.data(), positions_.data() + first_vertex[m]);
+        place_vertices(std::uint32_t(m), first_corner[m], std::uint32_t(first_vertex[m]));
         measure_slack(std::uint32_t(m), first_corner[m]);
-        split_triangles(std::uint32_t(m));
+        split_triangles(std::uint32_t(m), first_edge[m]);
+        patches_[m].marked.clear();
     });
     collect_slack(first_corner);
 }
 
-void Refinement::mark(PatchEdge& edge) {
-    edge.marked = true;
-    if (edge.rim_node != kNone) rim_nodes_[edge.rim_node].marked = true;
+void Refinement::place_vertices(std::uint32_t member, std::size_t first_corner, std::uint32_t first_vertex) {
+    PatchMesh& mesh = patches_[member];
+    std::vector<double> u, v;
+    std::uint32_t next = first_vertex;
+    for (std::size_t i = first_corner; i < mesh.uv.size(); ++i) {
+        if (mesh.vertex[i] != kNone) continue;
+        mesh.vertex[i] = next++;
+        u.push_back(mesh.uv[i].x);
+        v.push_back(mesh.uv[i].y);
+    }
+    surface_[member].patch.points(u.size(), u.data(), v.data(), positions_.data() + first_vertex);
 }
 
 bool Refinement::mark_coincident_edges() {
+    // In the plane of parameters two corners are joined by one edge at most. So are two mesh vertices, unless one of them
+    // is several corners, which only vertices on rims can be.
     std::unordered_map<std::uint64_t, int> count;
     const auto each = [&](auto f) {
         for (auto& mesh : patches_)
-            for (const auto& t : mesh.triangles) {
-                if (left_out(mesh, t)) continue;
-                for (const auto e : t.edge) f(mesh.edges[e], mesh_edge(mesh, mesh.edges[e]));
+            for (std::uint32_t i = 0; i < mesh.edges.size(); ++i) {
+                const PatchEdge& e = mesh.edges[i];
+                if (e.child != kNone || !(shared_[mesh.vertex[e.a]] || shared_[mesh.vertex[e.b]])) continue;
+                int beside = 0;
+                for (const auto t : e.side) beside += t != kNone && !mesh.left_out(mesh.triangles[t]);
+                if (beside > 0) f(mesh, i, mesh_edge(mesh, e), beside);
             }
     };
-    each([&](const PatchEdge&, std::uint64_t key) { ++count[key]; });
+    each([&](PatchMesh&, std::uint32_t, std::uint64_t key, int beside) { count[key] += beside; });
     bool any = false;
-    each([&](PatchEdge& edge, std::uint64_t key) {
+    each([&](PatchMesh& mesh, std::uint32_t edge, std::uint64_t key, int) {
         if (count[key] <= 2) return;
-        mark(edge);
+        mark(mesh, edge);
         any = true;
     });
     return any;
@@ -393,26 +371,28 @@ bool Refinement::mark_coincident_edges() {
 
 bool Refinement::mark_lost_edges() {
     const auto any_left_out = [](const PatchMesh& mesh) {
-        return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const PatchTriangle& t) { return left_out(mesh, t); });
+        return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const PatchTriangle& t) { return mesh.left_out(t); });
     };
     if (std::none_of(patches_.begin(), patches_.end(), any_left_out)) return false;
+    // A segment that is left out joins two vertices that it shares with other triangles, or is the whole of a patch.
     std::unordered_set<std::uint64_t> kept;
     std::vector<char> named(positions_.size(), 0);
     for (const auto& mesh : patches_)
         for (const auto& t : mesh.triangles) {
-            if (left_out(mesh, t)) continue;
-            for (const auto e : t.edge) kept.insert(mesh_edge(mesh, mesh.edges[e]));
-            for (const auto c : t.corner) named[mesh.vertex[c]] = 1;
+            if (mesh.left_out(t)) continue;
+            for (const auto e : t.edge)
+                if (shared_[mesh.vertex[mesh.edges[e].a]] || shared_[mesh.vertex[mesh.edges[e].b]]) kept.insert(mesh_edge(mesh, mesh.edges[e]));
+            for (const auto v : mesh.vertices(t)) named[v] = 1;
         }
     bool any = false;
     for (auto& mesh : patches_)
         for (const auto& t : mesh.triangles) {
-            if (!left_out(mesh, t)) continue;
+            if (!mesh.left_out(t)) continue;
             for (const auto e : t.edge) {
-                PatchEdge& edge = mesh.edges[e];
+                const PatchEdge& edge = mesh.edges[e];
                 const bool point = mesh.vertex[edge.a] == mesh.vertex[edge.b];
                 if (point ? named[mesh.vertex[edge.a]] : kept.count(mesh_edge(mesh, edge)) > 0) continue;
-                if (!point) mark(edge);
+                if (!point) mark(mesh, e);
                 any = true;
             }
         }
@@ -423,27 +403,6 @@ std::size_t Refinement::triangle_count() const {
     std::size_t n = 0;
     for (const auto& p : patches_) n += p.triangles.size();
     return n;
-}
-
-double Refinement::predicted_triangles(double tolerance) const {
-    double sum = 0;
-    for (const auto& p : patches_)
-        for (const auto& t : p.triangles) sum += std::isfinite(t.bound) ? std::max(1.0, t.bound / tolerance) : 1;
-    return sum;
-}
-
-std::size_t Refinement::unbounded_count() const {
-    std::size_t n = 0;
-    for (const auto& p : patches_)
-        for (const auto& t : p.triangles) n += !std::isfinite(t.bound);
-    return n;
-}
-
-double Refinement::worst_bound() const {
-    double worst = 0;
-    for (const auto& p : patches_)
-        for (const auto& t : p.triangles) worst = std::max(worst, t.bound);
-    return worst;
 }
 
 std::vector<std::array<std::uint32_t, 2>> Refinement::open_edges() const {

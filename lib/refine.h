@@ -1,12 +1,15 @@
 // refine.h -- the triangulation of a composite while it is being refined; internal to tessellate.cpp.
 //
 // Every patch has its own vertices (parameters), edges and triangles; edges on a rim hang on nodes of that rim, which all
-// patches around it share. Edges are only ever bisected, so a mark on an edge is all that neighbours need to know.
+// patches around it share. Edges are only ever bisected, so a mark on an edge is all that neighbours need to know. Every round
+// touches only what is new: fresh triangles, marked edges and the triangles beside them.
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "bound_cell.h"
 #include "composite.h"
 #include "scalar/vec.h"
 #include "topology.h"
@@ -22,6 +25,7 @@ struct RimNode {
     std::uint32_t a = 0, b = 0;    // mesh vertices
     std::uint32_t child = kNone;   // children are child and child + 1
     bool marked = false;
+    std::array<std::uint32_t, 2> edge{kNone, kNone};  // the patch edge of each use
 };
 
 struct PatchEdge {
@@ -31,12 +35,14 @@ struct PatchEdge {
     std::uint32_t use = 0;            // of the rim
     bool reversed = false;            // a is at the rim node's b
     bool marked = false;
+    std::array<std::uint32_t, 2> side{kNone, kNone};  // the triangles beside it
 };
 
 struct PatchTriangle {
     std::array<std::uint32_t, 3> corner{};
     std::array<std::uint32_t, 3> edge{};  // edge k joins corners k and k+1
-    double bound = -1;                    // proved, slack of the corners included; negative: not bounded yet
+    const BoundCell* cell = nullptr;
+    TriangleBound proof{};                // slack of the corners not included
 };
 
 struct PatchMesh {
@@ -45,31 +51,55 @@ struct PatchMesh {
     std::vector<double> slack;          // at least the distance of the mesh vertex from the exact patch at uv
     std::vector<PatchEdge> edges;
     std::vector<PatchTriangle> triangles;
+    std::vector<std::uint32_t> fresh;   // triangles not bounded yet
+    std::vector<std::uint32_t> marked;  // edges to be bisected, those on rims not included
+    std::vector<std::unique_ptr<BoundCell>> cells;
+
+    std::array<std::uint32_t, 3> vertices(const PatchTriangle& t) const { return {vertex[t.corner[0]], vertex[t.corner[1]], vertex[t.corner[2]]}; }
+    /// Triangles that name a mesh vertex twice, at poles and seams, are segments and left out of the mesh.
+    bool left_out(const PatchTriangle& t) const {
+        const auto [a, b, c] = vertices(t);
+        return a == b || b == c || c == a;
+    }
+    /// At least the distance of a corner of the triangle from the surface.
+    double slack_of(const PatchTriangle& t) const;
 };
 
 class Refinement {
 public:
-    Refinement(const Composite& surface, const Topology& topology);
+    Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure);
 
-    /// Bounds all triangles that have none and marks the worst edge of those above the tolerance; true when none is.
+    /// Bounds all triangles that have no bound and marks the worst edge of those above the tolerance; true when none is.
     /// Also marks edges whose two ends are one vertex without being collapsed.
-    bool bound_and_mark(double tolerance);
+    bool bound_and_mark();
+    /// Geometric bounds need the neighbours: marks triangles that are above the tolerance with them. False when there is none.
+    bool mark_with_neighbours();
     /// Bisects all marked edges and the triangles around them.
     void split_marked();
     /// Marks edges where more than two triangles meet that are different edges of the surface; false when there is none.
     bool mark_coincident_edges();
-    /// Triangles that name a mesh vertex twice are left out of the mesh: marks those of their edges that no other triangle
-    /// has. False when nothing is lost; true without a mark when a whole patch is one vertex that no triangle has.
+    /// Marks those edges of the triangles left out that no other triangle has. False when nothing is lost; true without a
+    /// mark when a whole patch is one vertex that no triangle has.
     bool mark_lost_edges();
 
     std::size_t triangle_count() const;
-    /// About how many triangles the tolerance needs, from the bounds so far.
-    double predicted_triangles(double tolerance) const;
-    double worst_bound() const;
-    /// Triangles over which nothing could be proved yet.
-    std::size_t unbounded_count() const;
+    /// What the last bound_and_mark() found: about how many triangles the tolerance needs, the largest bound above it, and
+    /// over how many triangles nothing could be proved.
+    double predicted_triangles() const { return predicted_; }
+    double worst_bound() const { return worst_bound_; }
+    std::size_t unbounded_count() const { return unbounded_; }
     /// Largest distance of a mesh vertex from a patch that uses it: no refinement gets below it.
     double worst_slack() const { return worst_slack_; }
+
+    /// What is proved about a triangle, the slack of all corners that count included.
+    double bound_of(const PatchMesh& mesh, std::uint32_t triangle) const;
+
+    /// The largest of a patch, triangles that are left out included.
+    double worst_bound_of(std::size_t member) const;
+
+    /// The largest distance seen, in the measure, at the middles of all triangles and edges: from the surface's point to the
+    /// mesh's point of the same parameters, or to the nearest of the triangle, or two triangles, there.
+    double sampled_error() const;
 
     const std::vector<Point>& positions() const { return positions_; }
     const std::vector<PatchMesh>& patches() const { return patches_; }
@@ -81,18 +111,25 @@ private:
     void build_patch(std::uint32_t member);
     void split_rims();
     void split_edges(std::uint32_t member);
-    void split_triangles(std::uint32_t member);
+    void split_triangles(std::uint32_t member, std::uint32_t first_edge);
+    void place_vertices(std::uint32_t member, std::size_t first_corner, std::uint32_t first_vertex);
     void measure_slack(std::uint32_t member, std::size_t first);
     void collect_slack(const std::vector<std::size_t>& first);
-    void mark(PatchEdge& edge);
+    void bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t) const;
+    void mark(PatchMesh& mesh, std::uint32_t edge);
     Vec2 on_rim(const RimUse& use, double fraction, const Point& position, double low, double high) const;
 
     const Composite& surface_;
     const Topology& topology_;
+    const double tolerance_;
+    const Measure measure_;
     std::vector<Point> positions_;
+    std::vector<char> shared_;                 // by mesh vertex: on a rim, so that several corners may be it
     std::vector<RimNode> rim_nodes_;           // the first topology.rims.size() are the whole rims
+    std::vector<std::uint32_t> marked_rims_;
     std::vector<PatchMesh> patches_;
-    double worst_slack_ = 0;
+    double worst_slack_ = 0, predicted_ = 0, worst_bound_ = 0;
+    std::size_t unbounded_ = 0;
 };
 
 }  // namespace isoparm

@@ -42,8 +42,8 @@ void refine(Refinement& refinement, const TessellationOptions& options) {
     int coincident_rounds = 0, lost_rounds = 0, stale_rounds = 0;
     std::size_t fewest_unbounded = SIZE_MAX;
     for (int round = 0; round < max_rounds; ++round) {
-        const bool done = refinement.bound_and_mark(options.tolerance);
-        const double needed = std::max(refinement.predicted_triangles(options.tolerance), double(refinement.triangle_count()));
+        const bool done = refinement.bound_and_mark() && !refinement.mark_with_neighbours();
+        const double needed = refinement.predicted_triangles();
         if (refinement.worst_slack() > options.tolerance)
             throw Error(ErrorKind::budget, "the tolerance " + to_text(options.tolerance) + " cannot be reached: rounding, or a gap between patches that were joined, puts a vertex " +
                                                to_text(refinement.worst_slack()) + " from its surface; ask for a larger tolerance, or move the data nearer to the origin");
@@ -86,13 +86,12 @@ Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinemen
         part.uv = p.uv;
         part.vertex = p.vertex;
         part.flipped = topology.flipped[m];
+        part.certified_error = refinement.worst_bound_of(m);
         for (const auto& t : p.triangles) {
-            part.certified_error = std::max(part.certified_error, t.bound);
-            const auto a = p.vertex[t.corner[0]], b = p.vertex[t.corner[1]], c = p.vertex[t.corner[2]];
-            if (a == b || b == c || c == a) continue;  // a collapsed edge: its two long sides are one mesh edge
+            if (p.left_out(t)) continue;  // a collapsed edge: its two long sides are one mesh edge
             if (part.flipped) part.triangles.push_back({t.corner[0], t.corner[2], t.corner[1]});
             else part.triangles.push_back(t.corner);
-            for (auto v : {a, b, c}) number[v] = 0;
+            for (const auto v : p.vertices(t)) number[v] = 0;
         }
         mesh.parts.push_back(std::move(part));
     }
@@ -106,46 +105,11 @@ Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinemen
     return mesh;
 }
 
-/// Largest |S - L| at the middle and the edges' middles of every triangle: what a sampling program would report.
-double sampled_error(const Composite& surface, const Mesh& mesh) {
-    static constexpr double at[4][3] = {{1 / 3.0, 1 / 3.0, 1 / 3.0}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}};
-    double worst = 0;
-    for (const auto& part : mesh.parts) {
-        constexpr std::size_t chunk = 1024;
-        std::vector<double> largest((part.triangles.size() + chunk - 1) / chunk, 0.0);
-        tbb::parallel_for(std::size_t(0), largest.size(), [&](std::size_t k) {
-            std::vector<double> u, v;
-            std::vector<Point> flat;
-            for (std::size_t i = k * chunk; i < std::min(part.triangles.size(), (k + 1) * chunk); ++i)
-                for (const auto& w : at) {
-                    double pu = 0, pv = 0;
-                    Point x;
-                    for (int c = 0; c < 3; ++c) {
-                        const auto corner = part.triangles[i][c];
-                        pu += w[c] * part.uv[corner].x;
-                        pv += w[c] * part.uv[corner].y;
-                        x += w[c] * mesh.positions[part.vertex[corner]];
-                    }
-                    u.push_back(pu), v.push_back(pv), flat.push_back(x);
-                }
-            std::vector<Point> exact(u.size());
-            surface[part.member].patch.points(u.size(), u.data(), v.data(), exact.data());
-            for (std::size_t i = 0; i < u.size(); ++i) largest[k] = std::max(largest[k], distance(exact[i], flat[i]));
-        });
-        for (double x : largest) worst = std::max(worst, x);
-    }
-    return worst;
-}
-
 /// (0.3849 I+ + 0.2236 I-) / tolerance, I the integrals of sqrt|K| dA = sqrt|LN - M^2| du dv over K > 0 and K < 0, by the
 /// midpoint rule (Fejes Toth; Gruber; Atariah, Rote and Wintraecken 2018).
 double optimal_triangles(const Patch& patch, double tolerance) {
     constexpr int n = 32;
-    const Rect r = patch.rect();
-    std::vector<double> us{r.u0}, vs{r.v0};
-    for (double b : patch.breaks_u()) us.push_back(b);
-    for (double b : patch.breaks_v()) vs.push_back(b);
-    us.push_back(r.u1), vs.push_back(r.v1);
+    const std::vector<double> us = patch.lines_u(), vs = patch.lines_v();
     double convex = 0, saddle = 0;
     for (std::size_t a = 0; a + 1 < us.size(); ++a)
         for (std::size_t b = 0; b + 1 < vs.size(); ++b)
@@ -180,7 +144,7 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     if (!surface.empty() && !(diagonal > 1e-70 && diagonal < 1e70))
         throw_input("found a surface of size " + to_text(diagonal) + ", expected one between 1e-70 and 1e70 to tessellate; scale the data");
     const Topology topology = find_topology(surface, join_tolerance(options.tolerance, diagonal));
-    Refinement refinement(surface, topology);
+    Refinement refinement(surface, topology, options.tolerance, options.measure);
     refine(refinement, options);
 
     Tessellation result;
@@ -199,7 +163,7 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
         result.certified_error = std::max(result.certified_error, part.certified_error);
         result.surfaces.push_back({part.name, part.triangles.size(), part.certified_error, optimal_triangles(surface[m].patch, options.tolerance)});
     }
-    result.sampled_error = sampled_error(surface, result.mesh);
+    result.sampled_error = refinement.sampled_error();
     result.seconds_sample = seconds_since(start);
     return result;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bound.h"
 #include "composite.h"
 #include "mesh.h"
 
@@ -12,6 +13,7 @@ namespace isoparm {
 
 struct TessellationOptions {
     double tolerance = 0;                    // scene units, absolute, > 0: largest distance between mesh and surface, both ways
+    Measure measure = Measure::parametric;   // geometric: the distance of the two sets; parametric: of points at equal parameters, never less
     std::size_t max_triangles = 20'000'000;  // budget; beyond it tessellate() throws Error(budget)
     std::function<void(double)> progress;    // called from the calling thread with a fraction in [0,1]; may be empty
 };

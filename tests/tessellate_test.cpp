@@ -21,8 +21,9 @@
 namespace isoparm::tests {
 namespace {
 
-Tessellation tessellate_relative(const Composite& surface, double relative) {
+Tessellation tessellate_relative(const Composite& surface, double relative, Measure measure = Measure::parametric) {
     TessellationOptions options;
+    options.measure = measure;
     options.tolerance = relative * bounding_box(surface).diagonal();
     return tessellate(surface, options);
 }
@@ -186,7 +187,7 @@ TEST(Tessellate, NothingSmallerThanTheToleranceIsLost) {
     const Patch lune = make_bezier_patch({{{10, 0, 0}, {9.9995, 1, 0}, {10, 2, 0}}, {{10, 0, 0}, {10.0005, 1, 0}, {10, 2, 0}}});  // two poles
     const Patch point = transformed(plane, Transform::translate({10, 0, 0}) * Transform::scale({0, 0, 0}));
     for (const Patch& thin : {tiny, lune, point}) {
-        const Tessellation t = tessellate({{"plane", plane}, {"thin", thin}}, {1e-2, 1000, {}});
+        const Tessellation t = tessellate({{"plane", plane}, {"thin", thin}}, {1e-2, Measure::parametric, 1000, {}});
         EXPECT_GT(t.mesh.parts[1].triangles.size(), 0u);
     }
 }
@@ -321,7 +322,7 @@ TEST(TessellateThreads, SameMeshForEveryNumberOfThreads) {
     std::vector<Tessellation> results;
     for (const int threads : {1, 2, 7}) {
         tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
-        results.push_back(tessellate_relative(sphere(), 1e-3));
+        results.push_back(tessellate_relative(sphere(), 1e-3, Measure::geometric));
     }
     for (const auto& r : results) {
         ASSERT_EQ(r.mesh.positions.size(), results[0].mesh.positions.size());

@@ -32,8 +32,8 @@ that patches share are found and share their vertices.
                   points by is counted; a tolerance below that ends with exit code 2)
 --surface S       one surface, or one patch of it, as in teapot/teapot#7; otherwise all surfaces that the scene draws
 --tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal; otherwise the scene's
---measure M       geometric (default) or parametric. What is proved now is the parametric distance |S(u,v)-L(u,v)|,
-                  which is never less than the geometric one; both names are accepted
+--measure M       geometric (default): the distance of the two sets, both ways; parametric: of points at equal parameters,
+                  |S(u,v)-L(u,v)|, which is never less and needs more triangles
 --quality Q       fast; optimal is not built yet
 --vertices V      surface: vertices lie on the surface; free is not built yet
 --max-triangles N the budget, 20000000; beyond it the command ends with exit code 2 and says what was reached
@@ -189,6 +189,7 @@ int run(const std::vector<std::string>& arguments) {
     }
     TessellationOptions how;
     how.tolerance = tolerance - reserved;
+    how.measure = measure == "parametric" ? Measure::parametric : Measure::geometric;
     if (const auto most = options.integer("--max-triangles", 1, 2'000'000'000)) how.max_triangles = static_cast<std::size_t>(*most);
     Tessellation result = [&] {
         ProgressBar bar("tessellating", options.quiet());

@@ -1,0 +1,215 @@
+#include "bound_cell.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isoparm {
+namespace {
+
+/// Sums and products of numbers >= 0, a few dozen operations long, are at most this factor too small, up to underflow.
+constexpr double kSafe = 1 + 1e-13, kUnderflow = 1e-290;
+double safe(double x) { return x * kSafe + kUnderflow; }
+/// Times the sum of the absolute terms: at least the rounding error of H(m)[e,e] and of its products with unit vectors.
+constexpr double kRounding = 64 * 0x1p-53;
+
+constexpr std::array<int, 3> kNext{1, 2, 0};
+/// A triangle that fails is split by what its cell says, though this share of the bound may be the cell's: the first while there
+/// are finer cells, the second when there are none.
+constexpr double kClear = 0.4, kVague = 0.8;
+
+Point middle(const Vec3<Interval>& x) { return {mid(x.x), mid(x.y), mid(x.z)}; }
+double radius(const Vec3<Interval>& x) { return rounding::length_up(rad(x.x), rad(x.y), rad(x.z)); }
+double size_of(const Point& x) { return rounding::length_up(std::fabs(x.x), std::fabs(x.y), std::fabs(x.z)); }
+bool bounded(const Vec3<Interval>& x) { return x.x.bounded() && x.y.bounded() && x.z.bounded(); }
+
+/// Right-handed orthonormal frame (up to 1e-15) whose first vector is n, or the axes where n is no unit vector.
+std::array<Point, 3> frame_of(const Point& n) {
+    if (!(std::fabs(dot(n, n) - 1) < 4e-15)) return {Point{0, 0, 1}, Point{1, 0, 0}, Point{0, 1, 0}};
+    const Point t = normalized(cross(std::fabs(n.x) < 0.6 ? Point{1, 0, 0} : Point{0, 1, 0}, n));
+    return {n, t, cross(n, t)};
+}
+
+/// max over the simplex of |sum l_i l_j b_k| for the worse sign of b, with q_k >= 0 added to both.
+double largest_form(const std::array<double, 3>& b, const std::array<double, 3>& q) {
+    return std::max(simplex_maximum(q[0] + b[0], q[1] + b[1], q[2] + b[2]), simplex_maximum(q[0] - b[0], q[1] - b[1], q[2] - b[2]));
+}
+
+Box half_of(const Box& box, int k) {
+    const double mu = mid(box.u), mv = mid(box.v);
+    return {k & 1 ? Interval(mu, box.u.hi) : Interval(box.u.lo, mu), k & 2 ? Interval(mv, box.v.hi) : Interval(box.v.lo, mv)};
+}
+
+Box box_of(const std::array<Vec2, 3>& p) {
+    const auto [u0, u1] = std::minmax({p[0].x, p[1].x, p[2].x});
+    const auto [v0, v1] = std::minmax({p[0].y, p[1].y, p[2].y});
+    return {{u0, u1}, {v0, v1}};
+}
+bool inside(const Box& box, const Box& of) { return box.u.lo >= of.u.lo && box.u.hi <= of.u.hi && box.v.lo >= of.v.lo && box.v.hi <= of.v.hi; }
+
+}  // namespace
+
+SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box) {
+    const Enclosure e = patch.enclose(box);
+    u = e.u, v = e.v;
+    const double half[2] = {rounding::up(std::max(box.u.hi - u, u - box.u.lo)), rounding::up(std::max(box.v.hi - v, v - box.v.lo))};
+    const auto centre = [&](int i, int j, double scale) {
+        const int k = JetUV<Interval, 2>::index(i, j);
+        const Interval s(scale);
+        return Vec3<Interval>{s * e.centre.x.c[k], s * e.centre.y.c[k], s * e.centre.z.c[k]};
+    };
+    const auto over = [&](int i, int j, double scale) {
+        const int k = JetUV<Interval, 3>::index(i, j);
+        const Interval s(scale);
+        return Vec3<Interval>{s * e.over.x.c[k], s * e.over.y.c[k], s * e.over.z.c[k]};
+    };
+    const Vec3<Interval> second[3] = {centre(2, 0, 2), centre(1, 1, 1), centre(0, 2, 2)};
+    const Vec3<Interval> third[4] = {over(3, 0, 6), over(2, 1, 2), over(1, 2, 2), over(0, 3, 6)};
+    for (int k = 0; k < 4; ++k) {
+        if (!isoparm::bounded(third[k])) return;
+        t[k] = middle(third[k]), t_rad[k] = radius(third[k]);
+        t_size[k] = safe(size_of(t[k]) + t_rad[k]);
+    }
+    for (int k = 0; k < 3; ++k) {
+        if (!isoparm::bounded(second[k])) return;
+        h[k] = middle(second[k]), h_rad[k] = radius(second[k]);
+        h_size[k] = safe(size_of(h[k]) + t_size[k] * half[0] + t_size[k + 1] * half[1]);
+    }
+    const double all = h_size[0] + h_size[1] + h_size[2] + t_size[0] + t_size[1] + t_size[2] + t_size[3] + h_rad[0] + h_rad[1] + h_rad[2];
+    bounded = all < 1e290;
+}
+
+TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& triangle, Measure measure, bool least) {
+    TriangleBound result;
+    if (!s.bounded) return result;
+    const auto& p = triangle.uv;
+    const Box box = box_of(p);
+    const double mu = mid(box.u), mv = mid(box.v);
+    const double ru = std::max(box.u.hi - mu, mu - box.u.lo), rv = std::max(box.v.hi - mv, mv - box.v.lo);
+    const double du = mu - s.u, dv = mv - s.v, au = std::fabs(du), av = std::fabs(dv);
+    std::array<Point, 3> h;  // at (mu, mv)
+    for (int k = 0; k < 3; ++k) h[k] = s.h[k] + du * s.t[k] + dv * s.t[k + 1];
+
+    // Edges: H(m)[e,e], the mesh's edges, and what rounding in H[e,e] is relative to.
+    std::array<Point, 3> b, x;
+    std::array<double, 3> uu, uv, vv, noise, side;
+    for (int k = 0; k < 3; ++k) {
+        const double eu = p[kNext[k]].x - p[k].x, ev = p[kNext[k]].y - p[k].y;
+        uu[k] = eu * eu, uv[k] = eu * ev, vv[k] = ev * ev;
+        b[k] = uu[k] * h[0] + 2 * uv[k] * h[1] + vv[k] * h[2];
+        noise[k] = kRounding * (uu[k] * s.h_size[0] + 2 * std::fabs(uv[k]) * s.h_size[1] + vv[k] * s.h_size[2]);
+        x[k] = triangle.points[kNext[k]] - triangle.points[k];
+        side[k] = length(x[k]);
+    }
+    const Point normal = cross(x[0], x[1]);
+    const double twice_area = length(normal), longest = std::max({side[0], side[1], side[2]});
+    const bool flat = twice_area > 1e-9 * longest * longest;  // else too thin to have a normal
+    const Point n = flat ? normal / twice_area : Point{};
+
+    // How far H strays from H(m) in the triangle: along unit vectors by `size` of the third derivatives.
+    const double aspect = ru > 0 && rv > 0 ? rv / ru : 1;
+    std::array<double, 3> model;  // by which H(m) itself is uncertain
+    for (int k = 0; k < 3; ++k) model[k] = (s.h_rad[k] + s.t_rad[k] * au + s.t_rad[k + 1] * av) * (least ? -1 : 1);
+    const auto stray = [&](const std::array<double, 4>& size) {
+        const double suu = model[0] + size[0] * ru + size[1] * rv, suv = model[1] + size[1] * ru + size[2] * rv, svv = model[2] + size[2] * ru + size[3] * rv;
+        // 2 |du dv| <= aspect du^2 + dv^2 / aspect makes the form diagonal, which adds up over the corners.
+        const double quu = suu + suv * aspect, qvv = svv + suv / aspect;
+        std::array<double, 3> q;
+        for (int k = 0; k < 3; ++k) q[k] = safe(quu * uu[k] + qvv * vv[k] + noise[k]);
+        return q;
+    };
+    std::array<double, 4> size = s.t_size;
+    if (least)
+        for (int k = 0; k < 4; ++k) size[k] = std::max(0.0, size[k] - 2 * s.t_rad[k]);
+    const std::array<double, 3> q = stray(size);
+    std::array<double, 3> bend;  // at least |H[e,e]| anywhere in the triangle
+    for (int k = 0; k < 3; ++k) bend[k] = safe(length(b[k]) + q[k]);
+
+    const auto choose_edge = [&](const std::array<double, 3>& score) {
+        // Where two edges are all but equal, the longer one in the domain: the choice must not hang on rounding.
+        int best = 0;
+        for (int k = 1; k < 3; ++k) {
+            const double size_k = uu[k] + vv[k], size_best = uu[best] + vv[best];
+            if (score[k] > score[best] * (1 + 1e-9) || (score[k] >= score[best] * (1 - 1e-9) && size_k > size_best * (1 + 1e-9))) best = k;
+        }
+        return best;
+    };
+    result.worst_edge = result.worst_across = choose_edge(bend);
+    const auto parametric = [&] {
+        std::array<double, 3> most;
+        const auto frame = frame_of(n);
+        for (int f = 0; f < 3; ++f) most[f] = largest_form({dot(frame[f], b[0]), dot(frame[f], b[1]), dot(frame[f], b[2])}, least ? q : noise);
+        return safe(0.5 * (rounding::length_up(most[0], most[1], most[2]) + simplex_maximum(q[0], q[1], q[2])));
+    };
+    result.parametric = parametric();
+    if (measure == Measure::parametric || !flat) return result;
+
+    const double s_ = triangle.slack;
+    result.unit = n;
+    result.tilt = safe((8.1 * s_ * (longest + s_) + 33 * 0x1p-53 * longest * longest) / twice_area + 4 * 0x1p-53);
+    std::array<double, 4> along;
+    for (int k = 0; k < 4; ++k) along[k] = std::max(0.0, std::fabs(dot(n, s.t[k])) + (least ? -s.t_rad[k] : s.t_rad[k]) + 4 * 0x1p-53 * s.t_size[k]);
+    const std::array<double, 3> qn = stray(along), bn{dot(n, b[0]), dot(n, b[1]), dot(n, b[2])};
+    result.worst_edge = choose_edge({std::fabs(bn[0]) + qn[0], std::fabs(bn[1]) + qn[1], std::fabs(bn[2]) + qn[2]});
+    // Quiet: lenses around the edges meet at corners only, and the map to the plane of L keeps its orientation.
+    bool quiet = result.tilt <= 1e-3;
+    for (int k = 0; k < 3; ++k) quiet = quiet && bend[k] * std::max(side[kNext[k]], side[kNext[kNext[k]]]) <= 0.45 * twice_area;
+    const int base = side[0] >= side[1] && side[0] >= side[2] ? 0 : side[1] >= side[2] ? 1 : 2, i = kNext[base], j = kNext[i];
+    const double all = 0.5 * (bend[0] + bend[1] + bend[2]), yi = all + 0.5 * bend[i], yj = all + 0.5 * bend[j];
+    quiet = quiet && side[i] * yj + side[j] * yi + yi * yj <= 0.98 * twice_area;
+    if (!quiet) return result;
+    result.quiet = true;
+    result.normal = safe(0.5 * largest_form(bn, qn) + result.tilt * result.parametric);
+    for (int k = 0; k < 3; ++k) result.across[k] = safe((std::fabs(dot(cross(n, x[k]), b[k])) / side[k] + q[k] + 2 * result.tilt * bend[k]) / 8);
+    return result;
+}
+
+BoundCell::BoundCell(const Patch& patch, const Box& box) : BoundCell(patch, box, box) {}
+BoundCell::BoundCell(const Patch& patch, const Box& box, const Box& reach) : box_(box), reach_(reach), model_(patch, reach) {}
+BoundCell::~BoundCell() {
+    for (auto& c : children_) delete c.load();
+}
+
+/// The child whose reach holds the box, made if it is not there yet; nullptr where none holds it.
+const BoundCell* BoundCell::child(const Patch& patch, const Box& of) const {
+    const int k = (mid(of.u) >= mid(box_.u) ? 1 : 0) + (mid(of.v) >= mid(box_.v) ? 2 : 0);
+    if (BoundCell* c = children_[k].load(std::memory_order_acquire)) return inside(of, c->reach_) ? c : nullptr;
+    const Box half = half_of(box_, k);
+    const double gu = 0.25 * (half.u.hi - half.u.lo), gv = 0.25 * (half.v.hi - half.v.lo);
+    const Box reach{{std::max(reach_.u.lo, half.u.lo - gu), std::min(reach_.u.hi, half.u.hi + gu)}, {std::max(reach_.v.lo, half.v.lo - gv), std::min(reach_.v.hi, half.v.hi + gv)}};
+    if (!inside(of, reach)) return nullptr;
+    if (patch.domain() == Domain::triangle && mid(reach.u) + mid(reach.v) > 1) return nullptr;  // its centre has to be a point of the domain
+    auto fresh = std::unique_ptr<BoundCell>(new BoundCell(patch, half, reach));
+    BoundCell* expected = nullptr;
+    if (children_[k].compare_exchange_strong(expected, fresh.get(), std::memory_order_acq_rel)) return fresh.release();
+    return expected;  // another thread was faster, with the same numbers
+}
+
+TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure) {
+    const Box box = box_of(triangle.uv);
+    for (;;) {
+        double help = 1;  // where the cell tells nothing
+        if (cell->model_.bounded) {
+            const TriangleBound b = bound_triangle(cell->model_, triangle, measure);
+            if (b.own(measure) <= tolerance) return b;
+            // A finer cell helps if the bound may be below the tolerance, and to tell the edges apart.
+            const double least = bound_triangle(cell->model_, triangle, measure, true).own(measure);
+            help = least > tolerance ? 1 - least / b.own(measure) : 1;
+            if (help < kClear) return b;
+        }
+        const BoundCell* finer = cell->child(patch, box);
+        if (!finer && help < kVague) return bound_triangle(cell->model_, triangle, measure);
+        if (!finer) break;
+        cell = finer;
+    }
+    // The sharpest cell is the triangle's own box. Where second derivatives change too much, first ones may tell more.
+    TriangleBound sharpest = bound_triangle(SecondDerivatives(patch, box), triangle, measure);
+    if (sharpest.own(measure) <= tolerance) return sharpest;
+    const TriangleBound rough = bound_triangle(patch, triangle.uv, triangle.points);
+    if (rough.parametric < sharpest.parametric) {
+        sharpest.parametric = rough.parametric;
+        if (!sharpest.quiet) sharpest.worst_edge = sharpest.worst_across = rough.worst_edge;
+    }
+    return sharpest;
+}
+
+}  // namespace isoparm

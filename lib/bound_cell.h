@@ -1,0 +1,57 @@
+// bound_cell.h -- one enclosure of a patch over a cell of its domain, which serves all triangles inside the cell.
+//
+// A cell knows the second derivatives at its centre and the range of the third ones over it, in plain doubles with their
+// radii. The bound of a triangle then takes a few hundred operations of plain arithmetic, whose rounding is bounded beforehand.
+// Cells form a tree that grows where a triangle would pass with sharper numbers. docs/certificates.md has the proof.
+#pragma once
+#include <atomic>
+#include <memory>
+
+#include "bound.h"
+
+namespace isoparm {
+
+/// Taylor model of the second derivatives: H(q) = H(centre) + T (q - centre), T anywhere in mid T +- rad T.
+struct SecondDerivatives {
+    double u = 0, v = 0;                   // the centre
+    std::array<Point, 3> h{};              // S_uu, S_uv, S_vv there
+    std::array<double, 3> h_rad{};         // at least the length of what they may be off by
+    std::array<Point, 4> t{};              // S_uuu, S_uuv, S_uvv, S_vvv: middles of their ranges
+    std::array<double, 4> t_rad{};         // at least the length of what they may be off by, anywhere in the cell
+    std::array<double, 4> t_size{};        // at least their length
+    std::array<double, 3> h_size{};        // at least |h| + |t| times the half-widths: what rounding is relative to
+    bool bounded = false;                  // false: some of that has no bound, nothing else is set
+
+    SecondDerivatives() = default;
+    SecondDerivatives(const Patch& patch, const Box& box);
+};
+
+class BoundCell {
+public:
+    /// The cell of a box between breaks.
+    BoundCell(const Patch& patch, const Box& box);
+    ~BoundCell();
+    BoundCell(const BoundCell&) = delete;
+    BoundCell& operator=(const BoundCell&) = delete;
+
+    /// Bounds a triangle of this cell. `cell` is the cell in the tree to begin with; it becomes the one that was used,
+    /// which serves the triangle's parts too. Finer cells are made only where they may decide whether `tolerance` is kept.
+    /// Safe to call from several threads; the result does not depend on which cells exist.
+    static TriangleBound bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure);
+
+    const SecondDerivatives& model() const { return model_; }
+
+private:
+    BoundCell(const Patch& patch, const Box& box, const Box& reach);
+    const BoundCell* child(const Patch& patch, const Box& of) const;
+
+    Box box_;    // children halve it
+    Box reach_;  // a margin wider: triangles that lie in here are served
+    SecondDerivatives model_;
+    mutable std::array<std::atomic<BoundCell*>, 4> children_{};
+};
+
+/// The bound of a triangle in the box of the model. `least`: what no finer cell could go below, as far as the model tells; no bound.
+TriangleBound bound_triangle(const SecondDerivatives& model, const CornerData& triangle, Measure measure, bool least = false);
+
+}  // namespace isoparm
