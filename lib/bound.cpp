@@ -139,7 +139,7 @@ double geometric_bound(const TriangleBound& t, const std::array<const TriangleBo
         const double apart = other && other->quiet ? (length(t.unit - other->unit) + t.tilt + other->tilt) * (1 + 1e-14) + 1e-15 : 2;
         const double cosine = 1 - 0.5 * apart * apart;  // at most that of the angle between the planes
         // Over the neighbour, or where there is none, over this triangle alone.
-        const double beyond = cosine >= 0.9 ? std::max(t.normal, other->normal / cosine) + t.across[k] * (apart / cosine) : std::hypot(t.normal, t.across[k]);
+        const double beyond = cosine >= 0.95 ? std::max(t.normal, other->normal / cosine) + t.across[k] * (apart / cosine) : std::hypot(t.normal, t.across[k]);
         most = std::max(most, beyond * (1 + 1e-14));
     }
     return std::min(t.parametric, most);

@@ -16,6 +16,8 @@ constexpr std::array<int, 3> kNext{1, 2, 0};
 /// A triangle that fails is split by what its cell says, though this share of the bound may be the cell's: the first while there
 /// are finer cells, the second when there are none.
 constexpr double kClear = 0.4, kVague = 0.8;
+/// Cells this much wider than a triangle are not tried.
+constexpr double kLarge = 10;
 
 Point middle(const Vec3<Interval>& x) { return {mid(x.x), mid(x.y), mid(x.z)}; }
 double radius(const Vec3<Interval>& x) { return rounding::length_up(rad(x.x), rad(x.y), rad(x.z)); }
@@ -151,15 +153,27 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     const std::array<double, 3> qn = stray(along), bn{dot(n, b[0]), dot(n, b[1]), dot(n, b[2])};
     result.worst_edge = choose_edge({std::fabs(bn[0]) + qn[0], std::fabs(bn[1]) + qn[1], std::fabs(bn[2]) + qn[2]});
     // Quiet: lenses around the edges meet at corners only, and the map to the plane of L keeps its orientation.
+    std::array<Point, 3> inward;  // in the plane, across edge k
+    std::array<double, 3> across;  // at least |inward_k . H[e_k,e_k]|
     bool quiet = result.tilt <= 1e-3;
-    for (int k = 0; k < 3; ++k) quiet = quiet && bend[k] * std::max(side[kNext[k]], side[kNext[kNext[k]]]) <= 0.45 * twice_area;
+    for (int k = 0; k < 3; ++k) {
+        inward[k] = cross(n, x[k]) / side[k];
+        across[k] = safe(std::fabs(dot(inward[k], b[k])) + q[k] + 2 * result.tilt * bend[k]);
+        const double lens = (across[k] + 0.32 * (std::fabs(bn[k]) + qn[k])) * std::max(side[kNext[k]], side[kNext[kNext[k]]]) * side[k];
+        quiet = quiet && bend[k] <= side[k] && lens <= 0.39 * twice_area * (2 * side[k] - bend[k]);
+    }
     const int base = side[0] >= side[1] && side[0] >= side[2] ? 0 : side[1] >= side[2] ? 1 : 2, i = kNext[base], j = kNext[i];
-    const double all = 0.5 * (bend[0] + bend[1] + bend[2]), yi = all + 0.5 * bend[i], yj = all + 0.5 * bend[j];
-    quiet = quiet && side[i] * yj + side[j] * yi + yi * yj <= 0.98 * twice_area;
+    // Dd[e_k] along a unit vector f is at most this, d the difference of S and L.
+    const auto slope = [&](const Point& f, int k) {
+        const auto along_f = [&](int edge) { return std::fabs(dot(f, b[edge])) + q[edge] + 2 * result.tilt * bend[edge]; };
+        return 0.5 * (along_f(0) + along_f(1) + along_f(2) + along_f(k));
+    };
+    const double all = 0.5 * (bend[0] + bend[1] + bend[2]), ji = slope(inward[i], j), ij = slope(inward[j], i), ii = slope(inward[i], i);
+    quiet = quiet && (side[i] + all + 0.5 * bend[i]) * ji + side[j] * ij + (all + 0.5 * bend[j]) * ii <= 0.98 * twice_area;
     if (!quiet) return result;
     result.quiet = true;
     result.normal = safe(0.5 * largest_form(bn, qn) + result.tilt * result.parametric);
-    for (int k = 0; k < 3; ++k) result.across[k] = safe((std::fabs(dot(cross(n, x[k]), b[k])) / side[k] + q[k] + 2 * result.tilt * bend[k]) / 8);
+    for (int k = 0; k < 3; ++k) result.across[k] = safe(across[k] / 8);
     return result;
 }
 
@@ -186,6 +200,12 @@ const BoundCell* BoundCell::child(const Patch& patch, const Box& of) const {
 
 TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure) {
     const Box box = box_of(triangle.uv);
+    const auto width = [](const Interval& x) { return x.hi - x.lo; };
+    while (width(cell->box_.u) > kLarge * width(box.u) && width(cell->box_.v) > kLarge * width(box.v)) {
+        const BoundCell* finer = cell->child(patch, box);
+        if (!finer) break;
+        cell = finer;
+    }
     for (;;) {
         double help = 1;  // where the cell tells nothing
         if (cell->model_.bounded) {
@@ -202,8 +222,9 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
         cell = finer;
     }
     // The sharpest cell is the triangle's own box. Where second derivatives change too much, first ones may tell more.
-    TriangleBound sharpest = bound_triangle(SecondDerivatives(patch, box), triangle, measure);
-    if (sharpest.own(measure) <= tolerance) return sharpest;
+    const SecondDerivatives model(patch, box);
+    TriangleBound sharpest = bound_triangle(model, triangle, measure);
+    if (sharpest.own(measure) <= tolerance || bound_triangle(model, triangle, measure, true).own(measure) > (1 - kClear) * sharpest.own(measure)) return sharpest;
     const TriangleBound rough = bound_triangle(patch, triangle.uv, triangle.points);
     if (rough.parametric < sharpest.parametric) {
         sharpest.parametric = rough.parametric;

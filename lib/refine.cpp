@@ -25,12 +25,6 @@ template <class Count, class F> void for_all(std::size_t members, Count count, F
     });
 }
 
-double edge_parameter(const Patch& patch, int edge, const Vec2& p) {
-    if (patch.domain() == Domain::triangle) return edge == 0 ? 1 - p.y : edge == 1 ? p.x : p.y;
-    const Rect r = patch.rect();
-    return edge == 0 || edge == 2 ? (p.x - r.u0) / (r.u1 - r.u0) : (p.y - r.v0) / (r.v1 - r.v0);
-}
-
 /// A name for the mesh edge that an edge of a patch is, the same whichever patch and direction it is seen from.
 std::uint64_t mesh_edge(const PatchMesh& mesh, const PatchEdge& e) {
     const auto [a, b] = std::minmax(mesh.vertex[e.a], mesh.vertex[e.b]);
@@ -39,20 +33,18 @@ std::uint64_t mesh_edge(const PatchMesh& mesh, const PatchEdge& e) {
 
 }  // namespace
 
+double edge_parameter(const Patch& patch, int edge, const Vec2& p) {
+    if (patch.domain() == Domain::triangle) return edge == 0 ? 1 - p.y : edge == 1 ? p.x : p.y;
+    const Rect r = patch.rect();
+    return edge == 0 || edge == 2 ? (p.x - r.u0) / (r.u1 - r.u0) : (p.y - r.v0) / (r.v1 - r.v0);
+}
+
 double PatchMesh::slack_of(const PatchTriangle& t) const { return std::max({slack[t.corner[0]], slack[t.corner[1]], slack[t.corner[2]]}); }
 
-Refinement::Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure)
+Refinement::Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most)
     : surface_(surface), topology_(topology), tolerance_(tolerance), measure_(measure), positions_(topology.nodes), shared_(topology.nodes.size(), 1),
       patches_(surface.size()) {
-    for (std::uint32_t r = 0; r < topology.rims.size(); ++r) {
-        RimNode node;
-        node.rim = r, node.a = topology.rims[r].a, node.b = topology.rims[r].b;
-        rim_nodes_.push_back(node);
-    }
-    // Vertices that breaks make inside a patch are numbered patch by patch, so this loop is serial.
-    for (std::uint32_t m = 0; m < surface.size(); ++m) build_patch(m);
-    tbb::parallel_for(std::size_t(0), surface.size(), [&](std::size_t m) { measure_slack(std::uint32_t(m), 0); });
-    collect_slack(std::vector<std::size_t>(surface.size(), 0));
+    start(most);
 }
 
 void Refinement::collect_slack(const std::vector<std::size_t>& first) {
@@ -314,7 +306,11 @@ void Refinement::split_marked() {
         first_edge[m] = std::uint32_t(patches_[m].edges.size());
         split_edges(std::uint32_t(m));
     });
-    // New vertices inside the patches are numbered in the order of patches and edges, whatever thread made them.
+    number_vertices(first_corner, first_edge);
+}
+
+/// New vertices inside the patches are numbered in the order of patches and corners, whatever thread made them.
+void Refinement::number_vertices(const std::vector<std::size_t>& first_corner, const std::vector<std::uint32_t>& first_edge) {
     std::vector<std::size_t> first_vertex(patches_.size() + 1, positions_.size());
     for (std::size_t m = 0; m < patches_.size(); ++m) {
         std::size_t count = 0;

@@ -65,9 +65,13 @@ struct PatchMesh {
     double slack_of(const PatchTriangle& t) const;
 };
 
+/// t of edge_point() at a point of an edge of the domain.
+double edge_parameter(const Patch& patch, int edge, const Vec2& p);
+
 class Refinement {
 public:
-    Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure);
+    /// Begins with grids that are about as fine as the tolerance needs; with single cells when those would have more than `most` triangles.
+    Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most = 1e6);
 
     /// Bounds all triangles that have no bound and marks the worst edge of those above the tolerance; true when none is.
     /// Also marks edges whose two ends are one vertex without being collapsed.
@@ -108,7 +112,11 @@ public:
     bool collapsed(const PatchEdge& e) const { return e.rim_node != kNone && topology_.rims[rim_nodes_[e.rim_node].rim].collapsed; }
 
 private:
-    void build_patch(std::uint32_t member);
+    struct Start;  // of one patch
+    void start(double most);
+    void cut_rims(const std::vector<Start>& starts);
+    void build_patch(std::uint32_t member, const Start& start);
+    void number_vertices(const std::vector<std::size_t>& first_corner, const std::vector<std::uint32_t>& first_edge);
     void split_rims();
     void split_edges(std::uint32_t member);
     void split_triangles(std::uint32_t member, std::uint32_t first_edge);
@@ -125,7 +133,8 @@ private:
     const Measure measure_;
     std::vector<Point> positions_;
     std::vector<char> shared_;                 // by mesh vertex: on a rim, so that several corners may be it
-    std::vector<RimNode> rim_nodes_;           // the first topology.rims.size() are the whole rims
+    std::vector<RimNode> rim_nodes_;
+    std::vector<std::uint32_t> rim_pieces_;    // rim r begins as the nodes [rim_pieces_[r], rim_pieces_[r + 1])
     std::vector<std::uint32_t> marked_rims_;
     std::vector<PatchMesh> patches_;
     double worst_slack_ = 0, predicted_ = 0, worst_bound_ = 0;

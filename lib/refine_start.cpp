@@ -1,110 +1,291 @@
-// refine_start.cpp -- the triangulation that a Refinement begins with.
+// refine_start.cpp -- the triangulation that a Refinement begins with: a grid in every cell between breaks, each about as fine as
+// the tolerance needs, and strips of triangles to sides that other patches cut differently.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <map>
 
+#include "dice.h"
 #include "refine.h"
 
 namespace isoparm {
 
-/// The first triangulation: the cells between breaks, each cut along its shorter diagonal, or into a fan about its middle
-/// when other patches put nodes on its sides.
-void Refinement::build_patch(std::uint32_t member) {
-    const Patch& patch = surface_[member].patch;
-    PatchMesh& mesh = patches_[member];
-    std::map<std::pair<double, double>, std::uint32_t> corners;
-    const auto corner = [&](const Vec2& p, std::uint32_t vertex) {
-        const auto [it, fresh] = corners.try_emplace({p.x, p.y}, std::uint32_t(mesh.uv.size()));
-        if (fresh) {
-            mesh.uv.push_back(p);
-            if (vertex == kNone) {
-                vertex = std::uint32_t(positions_.size());
-                positions_.push_back(patch.point(p.x, p.y));
-                shared_.push_back(0);
+/// Grids of the cells of a patch, u-major; of the triangular domain one, with parts of the sides.
+struct Refinement::Start {
+    std::vector<double> us, vs;
+    std::vector<Bends> bends;
+    std::vector<DiceGrid> grids;
+    int parts = 1;
+    double triangles = 0;
+
+    Start() = default;
+    /// Single cells when `most` is 0.
+    Start(const Patch& patch, double tolerance, Measure measure, double most) : us(patch.lines_u()), vs(patch.lines_v()) {
+        for (std::size_t i = 0; i + 1 < us.size(); ++i)
+            for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
+                const Box box{{us[i], us[i + 1]}, {vs[j], vs[j + 1]}};
+                bends.emplace_back(patch, box, measure);
+                if (patch.domain() == Domain::triangle) {
+                    parts = most > 0 ? dice_triangle(bends.back(), tolerance, measure, most) : 1;
+                    triangles += double(parts) * parts;
+                } else {
+                    grids.push_back(most > 0 ? dice(bends.back(), box, tolerance, measure, most) : DiceGrid{{us[i], us[i + 1]}, {vs[j], vs[j + 1]}});
+                    triangles += grids.back().triangles();
+                }
             }
-            mesh.vertex.push_back(vertex);
+    }
+
+    /// Where the grids at edge k put vertices: t of the edge, growing, between its ends.
+    std::vector<double> on_edge(const Patch& patch, int k) const {
+        std::vector<double> list;
+        if (patch.domain() == Domain::triangle) {
+            for (int i = 1; i < parts; ++i) list.push_back(double(i) / parts);
+            return list;
         }
-        return it->second;
-    };
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
-    const auto edge = [&](std::uint32_t a, std::uint32_t b) {
-        const auto [it, fresh] = known.try_emplace(std::minmax(a, b), std::uint32_t(mesh.edges.size()));
-        if (fresh) {
-            mesh.edges.emplace_back();
-            mesh.edges.back().a = a, mesh.edges.back().b = b;
+        const std::size_t columns = us.size() - 1, rows = vs.size() - 1;
+        const bool along_u = k == 0 || k == 2;
+        const double a = along_u ? us.front() : vs.front(), b = along_u ? us.back() : vs.back();
+        for (std::size_t i = 0; i < (along_u ? columns : rows); ++i) {
+            const DiceGrid& grid = grids[along_u ? i * rows + (k == 0 ? 0 : rows - 1) : (k == 3 ? 0 : columns - 1) * rows + i];
+            for (const double x : along_u ? grid.us : grid.vs)
+                if (x > a && x < b) list.push_back((x - a) / (b - a));
         }
-        return it->second;
+        return list;
+    }
+};
+
+void Refinement::start(double most) {
+    std::vector<Start> starts(patches_.size());
+    const auto make = [&](double limit) {
+        tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) { starts[m] = Start(surface_[m].patch, tolerance_, measure_, limit); });
+        double triangles = 0;
+        for (const Start& s : starts) triangles += s.triangles;
+        return triangles;
     };
-    const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    if (!(make(most) <= most)) make(0);
+    cut_rims(starts);
+    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) { build_patch(std::uint32_t(m), starts[m]); });
+    number_vertices(std::vector<std::size_t>(patches_.size(), 0), std::vector<std::uint32_t>(patches_.size(), 0));
+}
+
+/// A rim is cut as the patch asks that wants the most pieces, among those that have the owner's parametrisation.
+void Refinement::cut_rims(const std::vector<Start>& starts) {
+    for (std::uint32_t r = 0; r < topology_.rims.size(); ++r) {
+        const Rim& rim = topology_.rims[r];
+        std::vector<double> cuts;
+        for (const RimUse& use : rim.uses) {
+            if (!use.affine || rim.collapsed) continue;
+            std::vector<double> here;
+            const auto [low, high] = std::minmax(use.t0, use.t1);
+            for (const double t : starts[use.member].on_edge(surface_[use.member].patch, use.edge))
+                if (t > low + 1e-6 * (high - low) && t < high - 1e-6 * (high - low)) here.push_back((t - use.t0) / (use.t1 - use.t0));
+            std::sort(here.begin(), here.end());
+            if (here.size() > cuts.size()) cuts = here;
+        }
+        rim_pieces_.push_back(std::uint32_t(rim_nodes_.size()));
+        const RimUse& owner = rim.uses[0];
+        RimNode node;
+        node.rim = r, node.a = rim.a, node.f0 = 0;
+        for (const double f : cuts) {
+            const Vec2 p = surface_[owner.member].patch.edge_point(owner.edge, owner.t0 + f * (owner.t1 - owner.t0));
+            node.f1 = f, node.b = std::uint32_t(positions_.size());
+            positions_.push_back(surface_[owner.member].patch.point(p.x, p.y));
+            shared_.push_back(1);
+            rim_nodes_.push_back(node);
+            node.f0 = f, node.a = node.b;
+        }
+        node.f1 = 1, node.b = rim.b;
+        rim_nodes_.push_back(node);
+    }
+    rim_pieces_.push_back(std::uint32_t(rim_nodes_.size()));
+}
+
+namespace {
+
+using Chain = std::vector<std::uint32_t>;  // corners along a line
+
+/// Makes the corners, edges and triangles of one patch.
+class Builder {
+public:
+    Builder(PatchMesh& mesh) : mesh_(mesh) {}
+
+    std::uint32_t corner(const Vec2& p, std::uint32_t vertex = kNone) {
+        mesh_.uv.push_back(p);
+        mesh_.vertex.push_back(vertex);
+        first_.push_back(kNone);
+        return std::uint32_t(mesh_.uv.size() - 1);
+    }
+    /// The edge between two corners.
+    std::uint32_t edge(std::uint32_t a, std::uint32_t b) {
+        const auto [low, high] = std::minmax(a, b);
+        for (auto e = first_[low]; e != kNone; e = next_[e])
+            if (std::max(mesh_.edges[e].a, mesh_.edges[e].b) == high) return e;
+        mesh_.edges.emplace_back();
+        mesh_.edges.back().a = a, mesh_.edges.back().b = b;
+        next_.push_back(first_[low]);
+        return first_[low] = std::uint32_t(mesh_.edges.size() - 1);
+    }
+    void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         PatchTriangle t;
         t.corner = {a, b, c};
         t.edge = {edge(a, b), edge(b, c), edge(c, a)};
-        t.cell = mesh.cells.back().get();
-        const auto index = std::uint32_t(mesh.triangles.size());
-        for (const auto e : t.edge) mesh.edges[e].side[mesh.edges[e].side[0] != kNone] = index;
-        mesh.fresh.push_back(index);
-        mesh.triangles.push_back(t);
+        t.cell = mesh_.cells.back().get();
+        const auto index = std::uint32_t(mesh_.triangles.size());
+        for (const auto e : t.edge) mesh_.edges[e].side[mesh_.edges[e].side[0] != kNone] = index;
+        mesh_.fresh.push_back(index);
+        mesh_.triangles.push_back(t);
+    }
+    /// a, b, c, d counter-clockwise, along the diagonal that bends less.
+    void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d, const Bends& bends) {
+        const auto& uv = mesh_.uv;
+        if (bends.less(uv[b], uv[d], uv[a], uv[c])) triangle(b, c, d), triangle(b, d, a);
+        else triangle(a, b, c), triangle(a, c, d);
+    }
+    /// The strip between two chains that run the same way, the inner one to the left.
+    void strip(const Chain& outer, const Chain& inner, const Bends& bends) {
+        const auto& uv = mesh_.uv;
+        const Vec2 from = uv[outer.front()], way{uv[outer.back()].x - from.x, uv[outer.back()].y - from.y};
+        const auto reached = [&](const Chain& c, std::size_t i) {
+            const Vec2 p{0.5 * uv[c[i]].x + 0.5 * uv[c[i + 1]].x, 0.5 * uv[c[i]].y + 0.5 * uv[c[i + 1]].y};
+            return ((p.x - from.x) * way.x + (p.y - from.y) * way.y) / (way.x * way.x + way.y * way.y);
+        };
+        std::size_t i = 0, j = 0;
+        while (i + 1 < outer.size() || j + 1 < inner.size()) {
+            bool on_outer = j + 1 == inner.size();
+            if (!on_outer && i + 1 < outer.size()) {
+                // By the middles of the next pieces; where those are about level, along the diagonal that bends less.
+                const double lead = reached(outer, i) - reached(inner, j), level = 0.3 / double(std::max(outer.size(), inner.size()));
+                on_outer = std::abs(lead) < level ? !bends.less(uv[outer[i]], uv[inner[j + 1]], uv[outer[i + 1]], uv[inner[j]]) : lead < 0;
+            }
+            if (on_outer) triangle(outer[i], outer[i + 1], inner[j]), ++i;
+            else triangle(outer[i], inner[j + 1], inner[j]), ++j;
+        }
+    }
+
+private:
+    PatchMesh& mesh_;
+    Chain first_, next_;  // edges by their smaller corner
+};
+
+Chain backwards(Chain c) {
+    std::reverse(c.begin(), c.end());
+    return c;
+}
+
+/// A cell whose sides, in the direction of growing parameters, are given.
+void fill_cell(Builder& build, const Bends& bends, DiceGrid grid, const Chain& bottom, const Chain& right, const Chain& top, const Chain& left) {
+    const bool fits = bottom.size() == grid.us.size() && top.size() == grid.us.size() && left.size() == grid.vs.size() && right.size() == grid.vs.size();
+    for (auto* lines : {&grid.us, &grid.vs})  // a strip around needs something inside
+        if (!fits && lines->size() == 2) lines->insert(lines->begin() + 1, 0.5 * (*lines)[0] + 0.5 * (*lines)[1]);
+    const std::size_t nu = grid.us.size() - 1, nv = grid.vs.size() - 1;
+    std::vector<Chain> at(nu + 1, Chain(nv + 1, kNone));
+    for (std::size_t i = 1; i < nu; ++i)
+        for (std::size_t j = 1; j < nv; ++j) at[i][j] = build.corner({grid.us[i], grid.vs[j]});
+    if (fits) {
+        for (std::size_t i = 0; i <= nu; ++i) at[i][0] = bottom[i], at[i][nv] = top[i];
+        for (std::size_t j = 0; j <= nv; ++j) at[0][j] = left[j], at[nu][j] = right[j];
+    }
+    const std::size_t margin = fits ? 0 : 1;
+    for (std::size_t i = margin; i + margin < nu; ++i)
+        for (std::size_t j = margin; j + margin < nv; ++j) build.quad(at[i][j], at[i + 1][j], at[i + 1][j + 1], at[i][j + 1], bends);
+    if (fits) return;
+    Chain low, high;
+    for (std::size_t i = 1; i < nu; ++i) low.push_back(at[i][1]), high.push_back(at[i][nv - 1]);
+    const Chain first(at[1].begin() + 1, at[1].end() - 1), last(at[nu - 1].begin() + 1, at[nu - 1].end() - 1);
+    build.strip(bottom, low, bends);
+    build.strip(right, last, bends);
+    build.strip(backwards(top), backwards(high), bends);
+    build.strip(backwards(left), backwards(first), bends);
+}
+
+/// The triangular domain whose sides, counter-clockwise from u = v = 0, are given.
+void fill_triangle(Builder& build, const Bends& bends, int n, const std::array<Chain, 3>& sides) {
+    const bool fits = std::all_of(sides.begin(), sides.end(), [&](const Chain& c) { return c.size() == std::size_t(n) + 1; });
+    if (!fits) n = std::max(n, 3);
+    std::vector<Chain> at(std::size_t(n) + 1, Chain(std::size_t(n) + 1, kNone));
+    for (int i = 1; i < n; ++i)
+        for (int j = 1; i + j < n; ++j) at[i][j] = build.corner({double(i) / n, double(j) / n});
+    if (fits)
+        for (int i = 0; i <= n; ++i) at[i][0] = sides[0][i], at[n - i][i] = sides[1][i], at[0][n - i] = sides[2][i];
+    const int margin = fits ? 0 : 1;
+    for (int i = margin; i < n - margin; ++i)
+        for (int j = margin; i + j < n - margin; ++j) {
+            build.triangle(at[i][j], at[i + 1][j], at[i][j + 1]);
+            if (i + j + 1 < n - margin) build.triangle(at[i + 1][j], at[i + 1][j + 1], at[i][j + 1]);
+        }
+    if (fits) return;
+    std::array<Chain, 3> inner;
+    for (int i = 1; i <= n - 2; ++i) inner[0].push_back(at[i][1]), inner[1].push_back(at[n - 1 - i][i]), inner[2].push_back(at[1][n - 1 - i]);
+    for (int k = 0; k < 3; ++k) build.strip(sides[k], inner[k], bends);
+}
+
+}  // namespace
+
+void Refinement::build_patch(std::uint32_t member, const Start& start) {
+    const Patch& patch = surface_[member].patch;
+    PatchMesh& mesh = patches_[member];
+    Builder build(mesh);
+    std::map<std::pair<double, double>, std::uint32_t> known;  // on the boundary, and where breaks cross
+    const auto corner = [&](const Vec2& p, std::uint32_t vertex) {
+        const auto [it, fresh] = known.try_emplace({p.x, p.y}, 0);
+        if (fresh) it->second = build.corner(p, vertex);
+        return it->second;
     };
     // Rims along the four (three) edges.
-    std::array<std::vector<std::uint32_t>, 4> side;  // corners along each edge, in its direction
+    std::array<Chain, 4> side;  // corners along each edge, in its direction
     for (int k = 0; k < patch.edges(); ++k)
         for (const EdgeRim& er : topology_.edges[member][k]) {
-            const Rim& rim = topology_.rims[er.rim];
-            const RimUse& use = rim.uses[er.use];
-            const auto a = corner(patch.edge_point(k, use.t0), rim.a), b = corner(patch.edge_point(k, use.t1), rim.b);
-            PatchEdge e;
-            e.a = a, e.b = b, e.rim_node = er.rim, e.use = er.use;
-            known[std::minmax(a, b)] = rim_nodes_[er.rim].edge[er.use] = std::uint32_t(mesh.edges.size());
-            mesh.edges.push_back(e);
-            if (side[k].empty()) side[k].push_back(er.reversed ? b : a);
-            side[k].push_back(er.reversed ? a : b);
+            const RimUse& use = topology_.rims[er.rim].uses[er.use];
+            Chain along;
+            double reached = use.t0;
+            for (auto i = rim_pieces_[er.rim]; i < rim_pieces_[er.rim + 1]; ++i) {
+                RimNode& node = rim_nodes_[i];
+                if (along.empty()) along.push_back(corner(patch.edge_point(k, use.t0), node.a));
+                const Vec2 p = node.f1 == 1 ? patch.edge_point(k, use.t1) : on_rim(use, node.f1, positions_[node.b], std::min(reached, use.t1), std::max(reached, use.t1));
+                if (!use.affine) reached = edge_parameter(patch, k, p);
+                along.push_back(corner(p, node.b));
+                const auto e = node.edge[er.use] = build.edge(along[along.size() - 2], along.back());
+                mesh.edges[e].rim_node = i, mesh.edges[e].use = er.use;
+            }
+            if (er.reversed) std::reverse(along.begin(), along.end());
+            side[k].insert(side[k].end(), along.begin() + (side[k].empty() ? 0 : 1), along.end());
         }
-    const auto fan = [&](const std::vector<std::uint32_t>& polygon, const Vec2& centre) {
-        const auto c = corner(centre, kNone);
-        for (std::size_t i = 0; i < polygon.size(); ++i) triangle(polygon[i], polygon[(i + 1) % polygon.size()], c);
-    };
     if (patch.domain() == Domain::triangle) {
         mesh.cells.push_back(std::make_unique<BoundCell>(patch, Box{{0, 1}, {0, 1}}));
-        std::vector<std::uint32_t> polygon;  // C -> A -> B -> C
-        for (int k : {1, 2, 0}) polygon.insert(polygon.end(), side[k].begin(), side[k].end() - 1);
-        if (polygon.size() == 3) triangle(polygon[0], polygon[1], polygon[2]);
-        else fan(polygon, {1.0 / 3, 1.0 / 3});
-        return;
+        return fill_triangle(build, start.bends[0], start.parts, {side[1], side[2], side[0]});  // C to A to B to C
     }
-    const std::vector<double> us = patch.lines_u(), vs = patch.lines_v();
-    // Corners of side k from parameter `from` to `to` (of u or v), both included, in that direction.
-    const auto piece = [&](int k, double from, double to, std::vector<std::uint32_t>& out) {
-        std::vector<std::uint32_t> found;
+    const std::vector<double>&us = start.us, &vs = start.vs;
+    const std::size_t columns = us.size() - 1, rows = vs.size() - 1;
+    // Corners of a side from parameter `from` to `to`, both included.
+    const auto piece = [&](int k, double from, double to) {
+        Chain found;
         for (auto c : side[k]) {
             const double t = k == 0 || k == 2 ? mesh.uv[c].x : mesh.uv[c].y;
-            if (t >= std::min(from, to) && t <= std::max(from, to)) found.push_back(c);
+            if (t >= from && t <= to) found.push_back(c);
         }
-        if (from > to) std::reverse(found.begin(), found.end());
-        out.insert(out.end(), found.begin(), found.end() - 1);
+        return found;
     };
-    for (std::size_t i = 0; i + 1 < us.size(); ++i)
-        for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
-            const double u0 = us[i], u1 = us[i + 1], v0 = vs[j], v1 = vs[j + 1];
-            mesh.cells.push_back(std::make_unique<BoundCell>(patch, Box{{u0, u1}, {v0, v1}}));
-            std::vector<std::uint32_t> polygon;
-            if (j == 0) piece(0, u0, u1, polygon);
-            else polygon.push_back(corner({u0, v0}, kNone));
-            if (i + 2 == us.size()) piece(1, v0, v1, polygon);
-            else polygon.push_back(corner({u1, v0}, kNone));
-            if (j + 2 == vs.size()) piece(2, u1, u0, polygon);
-            else polygon.push_back(corner({u1, v1}, kNone));
-            if (i == 0) piece(3, v1, v0, polygon);
-            else polygon.push_back(corner({u0, v1}, kNone));
-            if (polygon.size() != 4) {
-                fan(polygon, {0.5 * u0 + 0.5 * u1, 0.5 * v0 + 0.5 * v1});
-                continue;
-            }
-            const auto at = [&](int k) { return positions_[mesh.vertex[polygon[k]]]; };
-            if (distance(at(0), at(2)) <= distance(at(1), at(3)) * (1 + 1e-9)) {
-                triangle(polygon[0], polygon[1], polygon[2]);
-                triangle(polygon[0], polygon[2], polygon[3]);
-            } else {
-                triangle(polygon[1], polygon[2], polygon[3]);
-                triangle(polygon[1], polygon[3], polygon[0]);
-            }
+    // Lines inside the patch take the vertices of the cell beside them that has more.
+    const auto denser = [](const std::vector<double>& a, const std::vector<double>& b) -> const std::vector<double>& { return a.size() >= b.size() ? a : b; };
+    std::vector<std::vector<Chain>> along_u(columns, std::vector<Chain>(rows + 1)), along_v(columns + 1, std::vector<Chain>(rows));
+    for (std::size_t i = 0; i < columns; ++i)
+        for (std::size_t j = 0; j <= rows; ++j) {
+            Chain& chain = along_u[i][j];
+            if (j == 0 || j == rows) chain = piece(j == 0 ? 0 : 2, us[i], us[i + 1]);
+            else
+                for (const double u : denser(start.grids[i * rows + j - 1].us, start.grids[i * rows + j].us)) chain.push_back(corner({u, vs[j]}, kNone));
+        }
+    for (std::size_t i = 0; i <= columns; ++i)
+        for (std::size_t j = 0; j < rows; ++j) {
+            Chain& chain = along_v[i][j];
+            if (i == 0 || i == columns) chain = piece(i == 0 ? 3 : 1, vs[j], vs[j + 1]);
+            else
+                for (const double v : denser(start.grids[(i - 1) * rows + j].vs, start.grids[i * rows + j].vs)) chain.push_back(corner({us[i], v}, kNone));
+        }
+    for (std::size_t i = 0; i < columns; ++i)
+        for (std::size_t j = 0; j < rows; ++j) {
+            mesh.cells.push_back(std::make_unique<BoundCell>(patch, Box{{us[i], us[i + 1]}, {vs[j], vs[j + 1]}}));
+            fill_cell(build, start.bends[i * rows + j], start.grids[i * rows + j], along_u[i][j], along_v[i + 1][j], along_u[i][j + 1], along_v[i][j]);
         }
 }
 

@@ -144,7 +144,7 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     if (!surface.empty() && !(diagonal > 1e-70 && diagonal < 1e70))
         throw_input("found a surface of size " + to_text(diagonal) + ", expected one between 1e-70 and 1e70 to tessellate; scale the data");
     const Topology topology = find_topology(surface, join_tolerance(options.tolerance, diagonal));
-    Refinement refinement(surface, topology, options.tolerance, options.measure);
+    Refinement refinement(surface, topology, options.tolerance, options.measure, double(options.max_triangles));
     refine(refinement, options);
 
     Tessellation result;

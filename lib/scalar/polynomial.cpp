@@ -117,16 +117,66 @@ Polynomial operator/(const Polynomial& a, const Polynomial& b) {
     return r;
 }
 
+namespace {
+
+/// Numbers with a bound of their errors: the sums and products of Horner's scheme at d, in plain arithmetic. Errors are sums of numbers
+/// >= 0, of a few hundred operations at most: kSafe makes up for their rounding.
+struct Horner {
+    static constexpr double kSafe = 1 + 1e-12, kUnit = 0x1p-53;
+    double d, d_error, d_size;
+
+    explicit Horner(const Interval& step) : d(mid(step)), d_error(rad(step)), d_size(rounding::up(std::fabs(d) + d_error)) {}
+    /// x + y d
+    void step(double& x, double& x_error, double y, double y_error) const {
+        if (y == 0 && y_error == 0) return;
+        const double product = y * d, sum = x + product;
+        const double rounded = (std::fabs(product) + std::fabs(sum)) * kUnit;
+        x_error += y_error * d_size + std::fabs(y) * d_error + rounded + rounding::kTiny;
+        x = sum;
+    }
+};
+Interval enclosed(double x, double error) { return error == 0 ? Interval(x) : checked(rounding::down(x - error * Horner::kSafe), rounding::up(x + error * Horner::kSafe)); }
+
+struct Split {
+    std::vector<double> x, error;
+    void take(const std::vector<Interval>& c) {
+        x.resize(c.size()), error.resize(c.size());
+        for (std::size_t i = 0; i < c.size(); ++i) x[i] = mid(c[i]), error[i] = c[i].lo == c[i].hi ? 0 : rad(c[i]);
+    }
+};
+
+}  // namespace
+
+/// The value at (dx, dy) from the centre.
+Interval Polynomial::at(const Interval& dx, const Interval& dy) const {
+    thread_local Split a;
+    a.take(c_);
+    const Horner along_x(dx), along_y(dy);
+    const int stride = q_ + 1;
+    for (int i = p_; i >= 0; --i) {
+        double* x = &a.x[std::size_t(i * stride)];
+        double* error = &a.error[std::size_t(i * stride)];
+        for (int j = q_ - 1; j >= 0; --j) along_y.step(x[j], error[j], x[j + 1], error[j + 1]);
+        if (i < p_) along_x.step(x[0], error[0], x[stride], error[stride]);
+    }
+    return enclosed(a.x[0], a.error[0]);
+}
+
 /// Coefficients about the centre moved by (dx, dy): Horner's scheme along each parameter (repeated synthetic division).
 void Polynomial::recentre(const Interval& dx, const Interval& dy, std::vector<Interval>& out) const {
-    out = c_;
+    thread_local Split a;
+    a.take(c_);
+    const Horner along_x(dx), along_y(dy);
     const int stride = q_ + 1;
+    double *x = a.x.data(), *error = a.error.data();
     for (int k = 0; k < p_; ++k)
         for (int i = p_ - 1; i >= k; --i)
-            for (int j = 0; j <= q_; ++j) out[i * stride + j] += out[(i + 1) * stride + j] * dx;
+            for (int j = 0; j <= q_; ++j) along_x.step(x[i * stride + j], error[i * stride + j], x[(i + 1) * stride + j], error[(i + 1) * stride + j]);
     for (int i = 0; i <= p_; ++i)
         for (int k = 0; k < q_; ++k)
-            for (int j = q_ - 1; j >= k; --j) out[i * stride + j] += out[i * stride + j + 1] * dy;
+            for (int j = q_ - 1; j >= k; --j) along_y.step(x[i * stride + j], error[i * stride + j], x[i * stride + j + 1], error[i * stride + j + 1]);
+    out.resize(c_.size());
+    for (std::size_t i = 0; i < c_.size(); ++i) out[i] = enclosed(x[i], error[i]);
 }
 
 }  // namespace isoparm

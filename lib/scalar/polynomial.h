@@ -67,6 +67,7 @@ public:
 
 private:
     Polynomial(int p, int q) : p_(p), q_(q), c_(static_cast<std::size_t>((p + 1) * (q + 1))) {}
+    Interval at(const Interval& dx, const Interval& dy) const;
     void recentre(const Interval& dx, const Interval& dy, std::vector<Interval>& out) const;
     int p_, q_;
     std::vector<Interval> c_;
@@ -85,6 +86,11 @@ template <int N>
 void Polynomial::jets(double centre_u, double centre_v, const Interval& u, const Interval& v, JetUV<Interval, 2>* at_centre,
                       JetUV<Interval, N>* over) const {
     const double mu = mid(u), mv = mid(v);
+    if constexpr (N == 0)
+        if (over && !at_centre && u.lo == u.hi && v.lo == v.hi) {
+            over->c[0] = at(Interval(mu) - Interval(centre_u), Interval(mv) - Interval(centre_v));
+            return;
+        }
     thread_local std::vector<Interval> a;
     recentre(Interval(mu) - Interval(centre_u), Interval(mv) - Interval(centre_v), a);
     const int stride = q_ + 1;
@@ -95,24 +101,39 @@ void Polynomial::jets(double centre_u, double centre_v, const Interval& u, const
         }
     if (!over) return;
     const double ru = rad(u), rv = rad(v);
-    // sum over a >= i, b >= j of binomial(a,i) binomial(b,j) c_ab dx^(a-i) dy^(b-j); even powers are not negative.
+    const auto power = [](double p, double r) { return r > 0 && p > 0 ? std::max(p * r, rounding::kTiny) : 0; };
+    // sum over a >= i, b >= j of binomial(a,i) binomial(b,j) c_ab dx^(a-i) dy^(b-j), powers at most pu and pv; even ones are
+    // not negative. Times an interval around 0, or from 0, only the magnitude counts, or the signs of c_ab.
     for (int k = 0; k < over->size; ++k) {
         const auto [i, j] = JetUV<Interval, N>::powers[k];
-        Interval sum(0);
-        double pu = 1;
+        if (i > p_ || j > q_) {
+            over->c[k] = Interval(0);
+            continue;
+        }
+        const Interval first = a[i * stride + j];
+        double lo = 0, hi = 0, terms = 0, pu = 1;  // the rest: sums of numbers <= 0 and >= 0
         for (int s = i; s <= p_; ++s) {
             const bool even_u = (s - i) % 2 == 0;
             double pv = pu;
             for (int t = j; t <= q_; ++t) {
-                const bool even = even_u && (t - j) % 2 == 0;
-                const double m = rounding::up(pv * (binomial(s, i) * binomial(t, j)));
-                if (s == i && t == j) sum = sum + a[s * stride + t];
-                else sum = sum + a[s * stride + t] * Interval(even ? 0 : -m, m);
-                pv = rounding::product_up(pv, rv);
+                const Interval& c = a[s * stride + t];
+                if ((s != i || t != j) && pv > 0 && (c.lo != 0 || c.hi != 0)) {
+                    const double m = pv * (binomial(s, i) * binomial(t, j));
+                    if (even_u && (t - j) % 2 == 0) {
+                        lo += m * std::min(0.0, c.lo), hi += m * std::max(0.0, c.hi);
+                    } else {
+                        const double x = m * mag(c);
+                        lo -= x, hi += x;
+                    }
+                    terms += 1;
+                }
+                pv = power(pv, rv);
             }
-            pu = rounding::product_up(pu, ru);
+            pu = power(pu, ru);
         }
-        over->c[k] = sum;
+        // Every term is at most p + q + 4 products of one sign, the sum `terms` additions of one sign: relative errors add up.
+        const double widen = 1 + (terms + p_ + q_ + 8) * 0x1p-52, tiny = (terms + 1) * rounding::kTiny;
+        over->c[k] = terms > 0 ? first + checked(lo * widen - tiny, hi * widen + tiny) : first;
     }
 }
 
