@@ -159,7 +159,7 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     for (int k = 0; k < 3; ++k) {
         inward[k] = cross(n, x[k]) / side[k];
         across[k] = safe(std::fabs(dot(inward[k], b[k])) + q[k] + 2 * result.tilt * bend[k]);
-        const double lens = (across[k] + 0.32 * (std::fabs(bn[k]) + qn[k])) * std::max(side[kNext[k]], side[kNext[kNext[k]]]) * side[k];
+        const double lens = (across[k] + 0.32 * (std::fabs(bn[k]) + qn[k] + result.tilt * bend[k])) * std::max(side[kNext[k]], side[kNext[kNext[k]]]) * side[k];
         quiet = quiet && bend[k] <= side[k] && lens <= 0.39 * twice_area * (2 * side[k] - bend[k]);
     }
     const int base = side[0] >= side[1] && side[0] >= side[2] ? 0 : side[1] >= side[2] ? 1 : 2, i = kNext[base], j = kNext[i];
