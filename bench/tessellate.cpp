@@ -20,9 +20,10 @@ Composite patches_of(const std::string& scene_name) {
     return all;
 }
 
-Work tessellate_once(const Composite& surface, double relative) {
+Work tessellate_once(const Composite& surface, double relative, Measure measure = Measure::geometric) {
     TessellationOptions options;
     options.tolerance = relative * bounding_box(surface).diagonal();
+    options.measure = measure;
     const Tessellation t = tessellate(surface, options);
     if (!(t.certified_error <= t.tolerance) || t.topology.t_junctions > 0)
         throw std::logic_error("the mesh is not what was asked for");
@@ -52,6 +53,7 @@ std::vector<Case> tessellation_cases() {
             if (relative < 5e-5) c.repetitions = 3;  // they take seconds
             cases.push_back(std::move(c));
         }
+        cases.push_back({table, "1e-4, one thread, parametric", "triangles", [patches] { return tessellate_once(patches, 1e-4, Measure::parametric); }});
         Case c{table, "1e-4, all cores", "triangles", [patches] { return tessellate_once(patches, 1e-4); }};
         c.clock = Clock::wall;
         cases.push_back(std::move(c));

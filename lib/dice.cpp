@@ -7,8 +7,9 @@ namespace isoparm {
 namespace {
 
 constexpr int kSamples = Bends::samples;
-constexpr double kUse = 0.9;          // of the tolerance: the rest is left to third derivatives and to neighbours
+constexpr double kUse = 0.8;          // of the tolerance: the rest is left to third derivatives and to neighbours
 constexpr double kBisected = 2.2;     // what a triangle above the tolerance costs: bisection overshoots
+constexpr double kFew = 1.05, kMany = 0.75;  // of the vertices wanted on a line
 constexpr double kStep = 1.19;        // between the numbers of lines that are tried
 
 /// Error of a triangle whose edges bend by a, b, c.
@@ -53,20 +54,68 @@ std::vector<double> lines(double a, double b, int n, const std::vector<double>& 
     return list;
 }
 
-/// Steps on from a pair while that makes cost(a, b) smaller.
-template <class F> std::pair<int, int> search(std::pair<int, int> best, F cost, double most) {
-    const auto next = [](int n, int way) { return way == 0 ? n : way > 0 ? std::max(n + 1, int(n * kStep)) : std::max(1, std::min(n - 1, int(std::ceil(n / kStep)))); };
-    double least = cost(best.first, best.second);
-    for (bool better = true; better;) {
-        better = false;
-        for (const auto& [da, db] : {std::pair{1, 1}, {1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, -1}, {-1, 1}}) {
-            const int a = next(best.first, da), b = next(best.second, db);
-            if (2.0 * a * b > most) continue;
-            const double c = cost(a, b);
-            if (c < least * (1 - 1e-9)) best = {a, b}, least = c, better = true;
-        }
+/// Bends with the two parameters exchanged if `columns`.
+struct Oriented {
+    const Bends& bends;
+    bool columns;
+    Bend operator()(int i, int j) const {
+        if (!columns) return bends(i, j);
+        const Bend& b = bends(j, i);
+        return {b.vv, b.uv, b.uu};
     }
-    return best;
+};
+
+double error_of(const Bend& b, double a, double c, Measure measure) {
+    const Point uu = a * a * b.uu, vv = c * c * b.vv, uv = 2 * a * c * b.uv, plus = uu + vv + uv, minus = uu + vv - uv;
+    return error_of(uu, vv, dot(plus, plus) < dot(minus, minus) ? plus : minus, measure);
+}
+
+/// n lines across a box: how dense vertices on them are at each sample, and about how many triangles come of it all.
+struct Plan {
+    int n = 0;
+    double triangles = std::numeric_limits<double>::infinity();
+    std::array<std::array<double, kSamples>, kSamples> density{};  // [i][j]: vertices per width, along line j
+};
+
+Plan plan(const Oriented& bends, const std::vector<double>& dv, int n, double tolerance, Measure measure) {
+    Plan p;
+    p.n = n, p.triangles = 0;
+    for (int i = 0; i < kSamples; ++i)
+        for (int j = 0; j < kSamples; ++j) {
+            const Bend b = bends(i, j);
+            const double c = 1 / (n * dv[j]);
+            // The widest triangle that passes; where none does, because lines are too far apart, one that does not add much.
+            const double target = std::max(kUse * tolerance, 1.3 * error_of(b, 0, c, measure));
+            double low = 1e-4, high = 1;
+            if (error_of(b, high, c, measure) <= target) low = high;
+            for (int step = 0; step < 12 && low < high; ++step) {
+                const double a = std::sqrt(low * high);
+                (error_of(b, a, c, measure) <= target ? low : high) = a;
+            }
+            p.density[i][j] = 1 / low;
+            p.triangles += 2 * n * dv[j] / low * outcome(target, tolerance) / (kSamples * kSamples);
+        }
+    return p;
+}
+
+DiceGrid grid_of(const Plan& p, const std::vector<double>& dv, bool columns, const Box& box) {
+    DiceGrid grid;
+    grid.columns = columns;
+    const Interval &along = columns ? box.v : box.u, &across = columns ? box.u : box.v;
+    grid.lines = lines(across.lo, across.hi, p.n, dv);
+    for (const double x : grid.lines) {
+        const double place = std::clamp((x - across.lo) / (across.hi - across.lo) * kSamples - 0.5, 0.0, kSamples - 1.0);
+        const int j = std::min(int(place), kSamples - 2);
+        std::vector<double> density(kSamples);
+        double sum = 0;
+        for (int i = 0; i < kSamples; ++i) sum += density[i] = p.density[i][j] + (place - j) * (p.density[i][j + 1] - p.density[i][j]);
+        for (double& d : density) d *= kSamples / sum;
+        // The same as on the line before if that is about right: straight columns make the best triangles.
+        const double wanted = sum / kSamples;
+        const bool same = !grid.rows.empty() && wanted <= kFew * double(grid.rows.back().size() - 1) && wanted >= kMany * double(grid.rows.back().size() - 1);
+        grid.rows.push_back(same ? grid.rows.back() : lines(along.lo, along.hi, std::max(1, int(std::ceil(wanted - 0.25))), density));
+    }
+    return grid;
 }
 
 }  // namespace
@@ -100,28 +149,35 @@ bool Bends::less(const Vec2& p, const Vec2& q, const Vec2& r, const Vec2& s) con
     return b.along(d) < b.along(e) * (1 - 1e-9);
 }
 
+DiceGrid DiceGrid::single(const Box& box) { return {false, {box.v.lo, box.v.hi}, {{box.u.lo, box.u.hi}, {box.u.lo, box.u.hi}}}; }
+
+double DiceGrid::triangles() const {
+    double sum = 0;
+    for (std::size_t j = 0; j + 1 < rows.size(); ++j) sum += double(rows[j].size() + rows[j + 1].size()) - 2;
+    return sum;
+}
+
 DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure measure, double most) {
-    if (!bends.exist()) return {{box.u.lo, box.u.hi}, {box.v.lo, box.v.hi}};
-    const auto du = densities([&](int i, int k) { return length(bends(i, k).uu); }), dv = densities([&](int j, int k) { return length(bends(k, j).vv); });
-    const auto cost = [&](int nu, int nv) {
-        double sum = 0;
+    if (!bends.exist()) return DiceGrid::single(box);
+    Plan best;
+    std::vector<double> best_density;
+    bool best_columns = false;
+    for (const bool columns : {false, true}) {
+        const Oriented turned{bends, columns};
+        const auto dv = densities([&](int j, int k) { return length(turned(k, j).vv); });
+        // Lines so far apart that edges across them would use 3/4 of the tolerance, and fewer and more of them.
+        double squares = 0;
         for (int i = 0; i < kSamples; ++i)
-            for (int j = 0; j < kSamples; ++j) {
-                const Bend& b = bends(i, j);
-                const double a = 1 / (nu * du[i]), c = 1 / (nv * dv[j]);
-                const Point uu = a * a * b.uu, vv = c * c * b.vv, uv = 2 * a * c * b.uv, plus = uu + vv + uv, minus = uu + vv - uv;
-                sum += du[i] * dv[j] * outcome(error_of(uu, vv, dot(plus, plus) < dot(minus, minus) ? plus : minus, measure), tolerance);
-            }
-        return sum * nu * nv;
-    };
-    // To begin with, edges along u and v that use 3/4 of the tolerance each.
-    double uu = 0, vv = 0;
-    for (int i = 0; i < kSamples; ++i)
-        for (int j = 0; j < kSamples; ++j) uu += dot(bends(i, j).uu, bends(i, j).uu), vv += dot(bends(i, j).vv, bends(i, j).vv);
-    const double nu0 = std::max(1.0, std::sqrt(std::sqrt(uu) / kSamples / (6 * tolerance))), nv0 = std::max(1.0, std::sqrt(std::sqrt(vv) / kSamples / (6 * tolerance)));
-    if (!(2 * nu0 * nv0 <= most)) return {{box.u.lo, box.u.hi}, {box.v.lo, box.v.hi}};
-    const auto [nu, nv] = search({int(nu0), int(nv0)}, cost, most);
-    return {lines(box.u.lo, box.u.hi, nu, du), lines(box.v.lo, box.v.hi, nv, dv)};
+            for (int j = 0; j < kSamples; ++j) squares += dot(bends(i, j).uu, bends(i, j).uu) * columns + dot(bends(i, j).vv, bends(i, j).vv) * !columns;
+        const double usual = std::sqrt(std::sqrt(squares) / kSamples / (6 * tolerance));
+        if (!(usual * usual <= most)) return DiceGrid::single(box);
+        for (double n = std::max(1.0, usual / 2); n <= 2 + 3 * usual; n = std::max(n + 1, n * kStep)) {
+            const Plan p = plan(turned, dv, int(n), tolerance, measure);
+            if (p.triangles < best.triangles * (1 - 1e-9)) best = p, best_density = dv, best_columns = columns;
+        }
+    }
+    if (!(best.triangles <= most)) return DiceGrid::single(box);
+    return grid_of(best, best_density, best_columns, box);
 }
 
 int dice_triangle(const Bends& bends, double tolerance, Measure measure, double most) {

@@ -34,15 +34,21 @@ private:
     std::array<Bend, samples * samples> bend_;
 };
 
-/// Lines u = const and v = const of a grid over a box, the box's ends included. Two triangles a cell.
+/// A stack of rows of vertices over a box: lines across one parameter, and on each of them its own positions along the other one.
 struct DiceGrid {
-    std::vector<double> us, vs;
-    double triangles() const { return 2.0 * double(us.size() - 1) * double(vs.size() - 1); }
+    bool columns = false;                   // lines are u = const, and rows run along v; else the other way round
+    std::vector<double> lines;              // the box's ends included
+    std::vector<std::vector<double>> rows;  // positions on each line, the box's ends included
+
+    static DiceGrid single(const Box& box);
+    double triangles() const;
+    /// Positions along edge k of the box (0 v low, 1 u high, 2 v high, 3 u low), ends included.
+    const std::vector<double>& side(int k) const { return (k == 0 || k == 2) == columns ? lines : k == 0 || k == 3 ? rows.front() : rows.back(); }
 };
 
-/// The grid whose cells are as large as the tolerance allows almost everywhere: its number of lines and their density along
-/// u and v come from second derivatives at samples, so that the fewest triangles are expected once those that fail are
-/// bisected. An estimate, no proof; at most `most` triangles.
+/// The grid whose cells are as large as the tolerance allows almost everywhere: the density of lines, and of vertices on each of
+/// them, comes from second derivatives at samples, so that the fewest triangles are expected once those that fail are
+/// bisected. An estimate, no proof; a single cell where more than `most` triangles would be needed.
 DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure measure, double most);
 
 /// The same for the triangular domain, whose box is the unit square: into how many parts each side is cut.

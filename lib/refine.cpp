@@ -148,8 +148,14 @@ bool Refinement::mark_with_neighbours() {
     for (std::size_t m = 0; m < patches_.size(); ++m)
         for (std::size_t i = 0; i < fails[m].size(); ++i)
             if (fails[m][i]) {
-                const PatchTriangle& t = patches_[m].triangles[i];
-                mark(patches_[m], t.edge[t.proof.worst_across]);
+                PatchMesh& mesh = patches_[m];
+                const PatchTriangle* worst = &mesh.triangles[i];
+                // Mostly it is a neighbour that is near the tolerance by itself: the one with the largest bound is split.
+                if (worst->proof.quiet)
+                    for (const auto e : mesh.triangles[i].edge)
+                        for (const auto other : mesh.edges[e].side)
+                            if (other != kNone && mesh.triangles[other].proof.quiet && mesh.triangles[other].proof.normal > worst->proof.normal) worst = &mesh.triangles[other];
+                mark(mesh, worst->edge[worst->proof.quiet ? worst->proof.worst_edge : worst->proof.worst_across]);
                 any = true;
             }
     return any;

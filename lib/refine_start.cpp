@@ -1,5 +1,5 @@
-// refine_start.cpp -- the triangulation that a Refinement begins with: a grid in every cell between breaks, each about as fine as
-// the tolerance needs, and strips of triangles to sides that other patches cut differently.
+// refine_start.cpp -- the triangulation that a Refinement begins with: in every cell between breaks rows of vertices, about as dense
+// as the tolerance needs, and strips of triangles between them and to sides that other patches cut differently.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace isoparm {
 
-/// Grids of the cells of a patch, u-major; of the triangular domain one, with parts of the sides.
+/// Rows in the cells of a patch, u-major; of the triangular domain one, with parts of the sides.
 struct Refinement::Start {
     std::vector<double> us, vs;
     std::vector<Bends> bends;
@@ -29,7 +29,7 @@ struct Refinement::Start {
                     parts = most > 0 ? dice_triangle(bends.back(), tolerance, measure, most) : 1;
                     triangles += double(parts) * parts;
                 } else {
-                    grids.push_back(most > 0 ? dice(bends.back(), box, tolerance, measure, most) : DiceGrid{{us[i], us[i + 1]}, {vs[j], vs[j + 1]}});
+                    grids.push_back(most > 0 ? dice(bends.back(), box, tolerance, measure, most) : DiceGrid::single(box));
                     triangles += grids.back().triangles();
                 }
             }
@@ -47,7 +47,7 @@ struct Refinement::Start {
         const double a = along_u ? us.front() : vs.front(), b = along_u ? us.back() : vs.back();
         for (std::size_t i = 0; i < (along_u ? columns : rows); ++i) {
             const DiceGrid& grid = grids[along_u ? i * rows + (k == 0 ? 0 : rows - 1) : (k == 3 ? 0 : columns - 1) * rows + i];
-            for (const double x : along_u ? grid.us : grid.vs)
+            for (const double x : grid.side(k))
                 if (x > a && x < b) list.push_back((x - a) / (b - a));
         }
         return list;
@@ -126,6 +126,7 @@ public:
         return first_[low] = std::uint32_t(mesh_.edges.size() - 1);
     }
     void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        if (mirrored_) std::swap(b, c);
         PatchTriangle t;
         t.corner = {a, b, c};
         t.edge = {edge(a, b), edge(b, c), edge(c, a)};
@@ -135,12 +136,8 @@ public:
         mesh_.fresh.push_back(index);
         mesh_.triangles.push_back(t);
     }
-    /// a, b, c, d counter-clockwise, along the diagonal that bends less.
-    void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d, const Bends& bends) {
-        const auto& uv = mesh_.uv;
-        if (bends.less(uv[b], uv[d], uv[a], uv[c])) triangle(b, c, d), triangle(b, d, a);
-        else triangle(a, b, c), triangle(a, c, d);
-    }
+    /// Turns all triangles over: for chains in exchanged parameters.
+    void mirror(bool mirrored) { mirrored_ = mirrored; }
     /// The strip between two chains that run the same way, the inner one to the left.
     void strip(const Chain& outer, const Chain& inner, const Bends& bends) {
         const auto& uv = mesh_.uv;
@@ -164,6 +161,7 @@ public:
 
 private:
     PatchMesh& mesh_;
+    bool mirrored_ = false;
     Chain first_, next_;  // edges by their smaller corner
 };
 
@@ -173,29 +171,33 @@ Chain backwards(Chain c) {
 }
 
 /// A cell whose sides, in the direction of growing parameters, are given.
-void fill_cell(Builder& build, const Bends& bends, DiceGrid grid, const Chain& bottom, const Chain& right, const Chain& top, const Chain& left) {
-    const bool fits = bottom.size() == grid.us.size() && top.size() == grid.us.size() && left.size() == grid.vs.size() && right.size() == grid.vs.size();
-    for (auto* lines : {&grid.us, &grid.vs})  // a strip around needs something inside
-        if (!fits && lines->size() == 2) lines->insert(lines->begin() + 1, 0.5 * (*lines)[0] + 0.5 * (*lines)[1]);
-    const std::size_t nu = grid.us.size() - 1, nv = grid.vs.size() - 1;
-    std::vector<Chain> at(nu + 1, Chain(nv + 1, kNone));
-    for (std::size_t i = 1; i < nu; ++i)
-        for (std::size_t j = 1; j < nv; ++j) at[i][j] = build.corner({grid.us[i], grid.vs[j]});
-    if (fits) {
-        for (std::size_t i = 0; i <= nu; ++i) at[i][0] = bottom[i], at[i][nv] = top[i];
-        for (std::size_t j = 0; j <= nv; ++j) at[0][j] = left[j], at[nu][j] = right[j];
+void fill_cell(Builder& build, const Bends& bends, DiceGrid grid, const std::array<Chain, 4>& side) {
+    // Rows run from side `first` to side `last`, the lowest is `low`, the uppermost `high`.
+    const Chain &low = side[grid.columns ? 3 : 0], &high = side[grid.columns ? 1 : 2], &first = side[grid.columns ? 0 : 3], &last = side[grid.columns ? 2 : 1];
+    build.mirror(grid.columns);
+    if (grid.lines.size() == 2 && (first.size() > 2 || last.size() > 2)) {  // strips along the sides need something inside
+        grid.lines.insert(grid.lines.begin() + 1, 0.5 * grid.lines[0] + 0.5 * grid.lines[1]);
+        grid.rows.insert(grid.rows.begin() + 1, grid.rows[0].size() > grid.rows[1].size() ? grid.rows[0] : grid.rows[1]);
     }
-    const std::size_t margin = fits ? 0 : 1;
-    for (std::size_t i = margin; i + margin < nu; ++i)
-        for (std::size_t j = margin; j + margin < nv; ++j) build.quad(at[i][j], at[i + 1][j], at[i + 1][j + 1], at[i][j + 1], bends);
-    if (fits) return;
-    Chain low, high;
-    for (std::size_t i = 1; i < nu; ++i) low.push_back(at[i][1]), high.push_back(at[i][nv - 1]);
-    const Chain first(at[1].begin() + 1, at[1].end() - 1), last(at[nu - 1].begin() + 1, at[nu - 1].end() - 1);
-    build.strip(bottom, low, bends);
-    build.strip(right, last, bends);
-    build.strip(backwards(top), backwards(high), bends);
-    build.strip(backwards(left), backwards(first), bends);
+    const bool fits_first = first.size() == grid.lines.size(), fits_last = last.size() == grid.lines.size(), fits = fits_first && fits_last;
+    const std::size_t n = grid.lines.size() - 1;
+    std::vector<Chain> rows{low};
+    Chain starts, ends;  // of the rows inside
+    for (std::size_t j = 1; j < n; ++j) {
+        std::vector<double>& at = grid.rows[j];
+        if (!fits && at.size() == 2) at.insert(at.begin() + 1, 0.5 * at[0] + 0.5 * at[1]);
+        Chain row;
+        if (fits_first) row.push_back(first[j]);
+        for (std::size_t i = 1; i + 1 < at.size(); ++i) row.push_back(build.corner(grid.columns ? Vec2{grid.lines[j], at[i]} : Vec2{at[i], grid.lines[j]}));
+        if (fits_last) row.push_back(last[j]);
+        starts.push_back(row.front()), ends.push_back(row.back());
+        rows.push_back(std::move(row));
+    }
+    rows.push_back(high);
+    for (std::size_t j = 0; j < n; ++j) build.strip(rows[j], rows[j + 1], bends);
+    if (!fits_first) build.strip(backwards(first), backwards(starts), bends);
+    if (!fits_last) build.strip(last, ends, bends);
+    build.mirror(false);
 }
 
 /// The triangular domain whose sides, counter-clockwise from u = v = 0, are given.
@@ -273,19 +275,19 @@ void Refinement::build_patch(std::uint32_t member, const Start& start) {
             Chain& chain = along_u[i][j];
             if (j == 0 || j == rows) chain = piece(j == 0 ? 0 : 2, us[i], us[i + 1]);
             else
-                for (const double u : denser(start.grids[i * rows + j - 1].us, start.grids[i * rows + j].us)) chain.push_back(corner({u, vs[j]}, kNone));
+                for (const double u : denser(start.grids[i * rows + j - 1].side(2), start.grids[i * rows + j].side(0))) chain.push_back(corner({u, vs[j]}, kNone));
         }
     for (std::size_t i = 0; i <= columns; ++i)
         for (std::size_t j = 0; j < rows; ++j) {
             Chain& chain = along_v[i][j];
             if (i == 0 || i == columns) chain = piece(i == 0 ? 3 : 1, vs[j], vs[j + 1]);
             else
-                for (const double v : denser(start.grids[(i - 1) * rows + j].vs, start.grids[i * rows + j].vs)) chain.push_back(corner({us[i], v}, kNone));
+                for (const double v : denser(start.grids[(i - 1) * rows + j].side(1), start.grids[i * rows + j].side(3))) chain.push_back(corner({us[i], v}, kNone));
         }
     for (std::size_t i = 0; i < columns; ++i)
         for (std::size_t j = 0; j < rows; ++j) {
             mesh.cells.push_back(std::make_unique<BoundCell>(patch, Box{{us[i], us[i + 1]}, {vs[j], vs[j + 1]}}));
-            fill_cell(build, start.bends[i * rows + j], start.grids[i * rows + j], along_u[i][j], along_v[i + 1][j], along_u[i][j + 1], along_v[i][j]);
+            fill_cell(build, start.bends[i * rows + j], start.grids[i * rows + j], {along_u[i][j], along_v[i + 1][j], along_u[i][j + 1], along_v[i][j]});
         }
 }
 

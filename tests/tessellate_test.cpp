@@ -62,6 +62,16 @@ double worst_excess(const Composite& surface, const Tessellation& t, Random& ran
     return excess;
 }
 
+/// Area of the triangles of a part in the domain: that of what they cover when none is folded over.
+double covered(const MeshPart& part) {
+    double area = 0;
+    for (const auto& t : part.triangles) {
+        const Vec2 &a = part.uv[t[0]], &b = part.uv[t[1]], &c = part.uv[t[2]];
+        area += 0.5 * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    }
+    return area;
+}
+
 class Soundness : public testing::TestWithParam<PatchType> {};
 
 TEST_P(Soundness, NoSampleLiesFartherThanCertified) {
@@ -76,6 +86,9 @@ TEST_P(Soundness, NoSampleLiesFartherThanCertified) {
         ASSERT_LE(t.sampled_error, t.certified_error) << "seed " << 1000 + i;
         ASSERT_LE(worst_excess(surface, t, random, 4), 1e-12 * (1 + t.tolerance)) << "seed " << 1000 + i;
         ASSERT_EQ(t.topology.t_junctions, 0u) << "seed " << 1000 + i;
+        const Rect r = surface[0].patch.rect();
+        const double whole = surface[0].patch.domain() == Domain::triangle ? 0.5 : (r.u1 - r.u0) * (r.v1 - r.v0);
+        ASSERT_LE(covered(t.mesh.parts[0]), whole * (1 + 1e-12)) << "seed " << 1000 + i;
         ASSERT_EQ(t.topology.degenerate_triangles, 0u) << "seed " << 1000 + i;
         ASSERT_EQ(t.topology.non_manifold_edges, 0u) << "seed " << 1000 + i;
     }
@@ -145,16 +158,6 @@ TEST(Bound, WhatIsNotANumberHasNoBound) {
         c[k] = NAN;
         EXPECT_EQ(simplex_maximum(c[0], c[1], c[2]), HUGE_VAL);
     }
-}
-
-/// Area of the domain that the triangles of a part cover.
-double covered(const MeshPart& part) {
-    double area = 0;
-    for (const auto& t : part.triangles) {
-        const Vec2 &a = part.uv[t[0]], &b = part.uv[t[1]], &c = part.uv[t[2]];
-        area += 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-    }
-    return std::abs(area);
 }
 
 // Samples on the triangles cannot see a triangle that is missing. Knots such as k of [0,49] are no edge_point() of a
