@@ -142,7 +142,9 @@ bool Refinement::mark_with_neighbours() {
     std::vector<std::vector<char>> fails(patches_.size());
     for (std::size_t m = 0; m < patches_.size(); ++m) fails[m].assign(patches_[m].triangles.size(), 0);
     for_all(patches_.size(), [&](std::size_t m) { return fails[m].size(); }, [&](std::size_t m, std::size_t i) {
-        fails[m][i] = !(bound_of(patches_[m], std::uint32_t(i)) <= tolerance_);
+        PatchTriangle& t = patches_[m].triangles[i];
+        t.settled = t.settled || bound_of(patches_[m], std::uint32_t(i)) <= tolerance_;
+        fails[m][i] = !t.settled;
     });
     bool any = false;
     for (std::size_t m = 0; m < patches_.size(); ++m)
@@ -259,6 +261,8 @@ void Refinement::split_triangles(std::uint32_t member, std::uint32_t first_edge)
             for (const auto k : e) {
                 auto& side = mesh.edges[k].side;
                 side[k < first_edge ? side[0] != i : side[0] != kNone] = index;
+                for (const auto beside : side)
+                    if (beside < mesh.triangles.size()) mesh.triangles[beside].settled = false;
             }
             if (first) mesh.triangles[i] = part;
             else mesh.triangles.push_back(part);

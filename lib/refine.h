@@ -43,6 +43,7 @@ struct PatchTriangle {
     std::array<std::uint32_t, 3> edge{};  // edge k joins corners k and k+1
     const BoundCell* cell = nullptr;
     TriangleBound proof{};                // slack of the corners not included
+    bool settled = false;                 // below the tolerance with the neighbours that it has now
 };
 
 struct PatchMesh {
