@@ -5,7 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "composite.h"
+
 namespace isoparm::bench {
+
+/// All surfaces that a scene draws.
+Composite patches_of(const std::string& scene_name);
 
 /// What one round did.
 struct Work {
@@ -33,6 +38,8 @@ struct Case {
 std::vector<Case> evaluation_cases();
 /// Certified meshes of scenes at relative tolerances 1e-2 ... 1e-5.
 std::vector<Case> tessellation_cases();
+/// What is proved over what is true, for the triangles of a grid.
+std::vector<Case> tightness_cases();
 /// Primary rays beside bare Embree, shaded points, complete pictures.
 std::vector<Case> ray_cases();
 

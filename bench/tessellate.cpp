@@ -8,9 +8,7 @@
 #include "drawn.h"
 
 namespace isoparm::bench {
-namespace {
 
-/// All surfaces that a scene draws.
 Composite patches_of(const std::string& scene_name) {
     const Scene scene = load_scene(ISOPARM_SOURCE_DIR "/scenes/" + scene_name + ".json");
     Composite all;
@@ -19,6 +17,8 @@ Composite patches_of(const std::string& scene_name) {
             for (const Member& m : surface_of(scene, o).patches) all.push_back(m);
     return all;
 }
+
+namespace {
 
 Work tessellate_once(const Composite& surface, double relative, Measure measure = Measure::geometric) {
     TessellationOptions options;
