@@ -53,7 +53,7 @@ std::vector<Curve> cross_derivatives(const std::vector<Curve>& r) {
 
 }  // namespace
 
-Patch make_network(const Network& network, Twist twist) {
+Patch make_network(const Network& network, Twist twist, Part) {
     const std::size_t m = network.a.size() - 1, n = network.b.size() - 1;
     if (network.a.size() < 2 || network.b.size() < 2)
         throw_input("found " + std::to_string(network.a.size()) + " curves a and " + std::to_string(network.b.size()) + " curves b, expected at least two of each");
