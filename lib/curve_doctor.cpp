@@ -130,9 +130,16 @@ private:
                 if (k != a && (nearest < 0 || distance(p, ends_[k].point[e]) < distance(p, ends_[nearest].point[nearest_end]))) nearest = k, nearest_end = e;
         text += "; the end nearest to " + end_text(a, end_a) + " is " + end_text(nearest, nearest_end) + ", " + short_text(distance(p, ends_[nearest].point[nearest_end])) + " away";
         const Approach meet = closest_approach(curves_[a], curves_[b]);
-        if (meet.distance <= tolerance_of(p, p, std::max(ends_[a].size[0], ends_[b].size[0])))
-            text += "; " + loop_.names[a] + " and " + loop_.names[b] + " cross (sampled) at their parameters " + short_text(meet.s) + " and " + short_text(meet.t) +
-                    ": cut them there with \"segment\"";
+        if (meet.distance <= tolerance_of(p, p, std::max(ends_[a].size[0], ends_[b].size[0]))) {
+            std::string cuts;
+            const auto cut = [&](int curve, double t) {
+                const double begin = curves_[curve].begin(), end = curves_[curve].end(), rounding = 1e-9 * (end - begin);
+                if (t > begin + rounding && t < end - rounding) cuts += (cuts.empty() ? "cut " : " and ") + loop_.names[curve] + " at its parameter " + short_text(t);
+            };
+            cut(a, meet.s);
+            cut(b, meet.t);
+            text += "; " + loop_.names[a] + " and " + loop_.names[b] + " cross (sampled)" + (cuts.empty() ? "" : ": " + cuts);
+        }
         return text;
     }
 

@@ -6,6 +6,8 @@ namespace isoparm {
 namespace {
 
 using doctor::append;
+using doctor::changes_of;
+using doctor::reversals_of;
 using doctor::short_text;
 
 /// Sides x(u,0), x(u,1), x(0,v), x(1,v): where HermiteData keeps each and its cross derivative.
@@ -45,13 +47,15 @@ public:
         }
     }
 
+    HermiteDoctor(const HermiteDoctor& other, Twist twist) : HermiteDoctor(other) { twist_ = twist; }
+
     Diagnosis<HermiteRepair> diagnose() const {
         std::vector<std::string> names;
         for (int k = 0; k < 4; ++k) names.push_back(name_of(k, kCurve));
         Diagnosis<HermiteRepair> d;
         const HermiteRepair as_given{{{0, 1, 2, 3}, {false, false, false, false}}, {false, false, false, false}, {false, false, false, false}};
         if (disagreements(as_given, size_of_places(as_given.sides)).empty()) return {true, {}, {}, {}};
-        const Diagnosis<Repair> frame = diagnose_loop({names, doctor::frame_joints, 8, "the frame"}, curves_);
+        const Diagnosis<Repair> frame = doctor::diagnose_loop({names, doctor::frame_joints, 8, "the frame"}, curves_);
         if (!frame.fits && !frame.repair) {
             d.misfit = frame.misfit;
             return d;
@@ -82,6 +86,8 @@ public:
             }
         } else {
             d.misfit += "; no order, direction and sign of the curves and their cross derivatives makes them agree";
+            if (twist_ == Twist::compatible && HermiteDoctor(*this, Twist::gregory).disagreements(as_given, size_of_places(as_given.sides)).empty())
+                d.misfit += "; only the twists differ, and the twist gregory takes both";
             if (!frame.fits) d.misfit += " (the curves alone close with " + frame.changes + ")";
         }
         return d;

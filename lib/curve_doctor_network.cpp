@@ -149,16 +149,20 @@ private:
     std::string look(const Family& u, const Family& v, Diagnosis<NetworkRepair>& d) const {
         const double outermost = std::max({u.size(0), u.size(2 * u.places() - 2), v.size(0), v.size(2 * v.places() - 2)});
         std::vector<std::array<int, 2>> open;
+        double widest = -1;
+        std::string which;
         for (int i = 0; i < v.places(); ++i)
             for (int j = 0; j < u.places(); ++j) {
                 const Point &a = v.at[2 * i][j], &b = u.at[2 * j][i];
-                if (!(distance(a, b) <= doctor::tolerance_of(a, b, outermost))) open.push_back({j, i});
+                const double gap = distance(a, b);
+                if (!(gap <= doctor::tolerance_of(a, b, outermost))) open.push_back({j, i});
+                if (gap > widest) widest = gap, which = u_text(j) + " and " + v_text(i);
             }
         d.fits = open.empty();
         if (d.fits) return "";
         std::string advice;
         const std::size_t crossings = std::size_t(u.places()) * std::size_t(v.places());
-        d.misfit = std::to_string(open.size()) + " of " + std::to_string(crossings) + " crossings are open";
+        d.misfit = std::to_string(open.size()) + " of " + std::to_string(crossings) + " crossings are open, widest " + which + ", " + short_text(widest) + " apart";
         if (crossings <= kMostCrossings) {
             const double size = size_of_all(u, v);
             d.repair = NetworkSearch(u, v, size, true).best();

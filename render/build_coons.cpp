@@ -4,6 +4,7 @@
 #include "patches/network.h"
 #include "patches/side_vertex.h"
 #include "registry.h"
+#include "repair.h"
 
 namespace isoparm {
 
@@ -46,13 +47,17 @@ std::array<Curve, 4> four_curves(const Json& j, const char* key, const char* mea
 BuiltSurface build_coons(const Json& j, SceneBuilder& scene) {
     const auto curve = [&](const char* key, const char* meaning) { return scene.curve(j.at(key, meaning)).curve; };
     const CoonsCurves curves{curve("c0", "the curve x(u,0)"), curve("c1", "the curve x(u,1)"), curve("d0", "the curve x(0,v)"), curve("d1", "the curve x(1,v)")};
-    return make_coons(curves, blend_of(j, scene.values()), part_of(j, scene.values()));
+    const auto blend = blend_of(j, scene.values());
+    const Part part = part_of(j, scene.values());
+    return fitted(curves, j, scene, [&](const CoonsCurves& c) { return make_coons(c, blend, part); });
 }
 
 BuiltSurface build_coons_hermite(const Json& j, SceneBuilder& scene) {
     const HermiteData data{four_curves(j, "f", "the curves x(0,v), x_u(0,v), x_u(1,v), x(1,v)", scene),
                            four_curves(j, "g", "the curves x(u,0), x_v(u,0), x_v(u,1), x(u,1)", scene)};
-    return make_coons_hermite(data, twist_of(j, scene.values(), Twist::compatible), part_of(j, scene.values()));
+    const Twist twist = twist_of(j, scene.values(), Twist::compatible);
+    const Part part = part_of(j, scene.values());
+    return fitted(HermiteCurves{data, twist}, j, scene, [&](const HermiteCurves& d) { return make_coons_hermite(d.data, twist, part); });
 }
 
 BuiltSurface build_network(const Json& j, SceneBuilder& scene) {
@@ -63,7 +68,8 @@ BuiltSurface build_network(const Json& j, SceneBuilder& scene) {
     }
     whole_only(j, values, {"sum", "P1", "P2", "P1P2"});
     const Network network{scene.curves(j.at("a", "the curves x(i,v), i = 0..m"), 2, 1000), scene.curves(j.at("b", "the curves x(u,j), j = 0..n"), 2, 1000)};
-    return make_network(network, twist_of(j, values, Twist::average));
+    const Twist twist = twist_of(j, values, Twist::average);
+    return fitted(network, j, scene, [&](const Network& n) { return make_network(n, twist); });
 }
 
 BuiltSurface build_coons_triangle(const Json& j, SceneBuilder& scene) {
@@ -78,8 +84,9 @@ BuiltSurface build_coons_triangle(const Json& j, SceneBuilder& scene) {
 
     const auto e = scene.curves(j.at("edges", "the edges [E1: B to C, E2: C to A, E3: A to B]"), 3, 3);
     const auto H = j.find("H"), form = j.find("form");
-    return make_side_vertex({e[0], e[1], e[2]}, H ? formula_of(*H, values) : Function::polynomial({0, 0, 1}),
-                            form ? forms[values.word(*form, {"delta", "seed"})] : SideVertexForm::delta);
+    const Function blend = H ? formula_of(*H, values) : Function::polynomial({0, 0, 1});
+    const SideVertexForm as = form ? forms[values.word(*form, {"delta", "seed"})] : SideVertexForm::delta;
+    return fitted(std::array<Curve, 3>{e[0], e[1], e[2]}, j, scene, [&](const std::array<Curve, 3>& edges) { return make_side_vertex(edges, blend, as); });
 }
 
 }  // namespace isoparm
