@@ -59,6 +59,8 @@ struct NetworkRepair {
     bool swapped = false;
     Repair u, v;
 };
+/// Of equally cheap repairs, the first in an order that tries the curve given for a place before the others. Searches at most 100 000
+/// crossings, and two million comparisons; then the repair is the cheapest found, and the text says if none was.
 /// As many u_curves as v_nodes and v_curves as u_nodes, or the other way round (then they can only be swapped).
 Diagnosis<NetworkRepair> diagnose_network(const CurveNetwork& network);
 

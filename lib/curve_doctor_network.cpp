@@ -12,6 +12,8 @@ using doctor::short_text;
 /// Beyond so many crossings no repair is looked for, and after so many comparisons the search is given up.
 constexpr std::size_t kMostCrossings = 100000;
 constexpr long kMostSteps = 2000000;
+constexpr const char* kTooMany = "; there are too many curves to try every order and direction";
+constexpr int kMostChangesTold = 12;
 
 /// The curves over the range in which the nodes are.
 std::vector<Curve> run_over(const std::vector<double>& nodes, const std::vector<Curve>& given) {
@@ -51,6 +53,7 @@ public:
         fill(0, {0, 0});
         return best_;
     }
+    bool gave_up() const { return steps_ > kMostSteps; }
 
 private:
     using Cost = std::tuple<int, int>;  // changes, reversals
@@ -163,11 +166,14 @@ private:
         std::string advice;
         const std::size_t crossings = std::size_t(u.places()) * std::size_t(v.places());
         d.misfit = std::to_string(open.size()) + " of " + std::to_string(crossings) + " crossings are open, widest " + which + ", " + short_text(widest) + " apart";
-        if (crossings <= kMostCrossings) {
+        if (crossings > kMostCrossings) {
+            advice = kTooMany;
+        } else {
             const double size = size_of_all(u, v);
-            d.repair = NetworkSearch(u, v, size, true).best();
+            NetworkSearch search(u, v, size, true);
+            d.repair = search.best();
             if (d.repair) return "";
-            advice = "; no order and direction of the curves closes them";
+            advice = search.gave_up() ? kTooMany : "; no order and direction of the curves closes them";
             for (double loose : {1e3, 1e6, 1e7})  // 1e-6, 1e-3, 1e-2 of the size: the order that was meant
                 if (const auto near = NetworkSearch(u, v, loose * size, false).best()) {
                     advice += nearly(u, v, *near);
@@ -197,7 +203,7 @@ private:
                 if (x > gap) gap = x, worst_i = r.v.order[i], worst_j = r.u.order[j];
             }
         const std::string changes = changes_text(r);
-        return ": at best" + (changes.empty() ? " (as given) " : " (" + changes + ") ") + u_text(worst_j) + " and " + v_text(worst_i) + " stay " + short_text(gap) + " apart";
+        return std::string(changes.empty() ? ": as given" : ": with " + changes) + " they come near, " + u_text(worst_j) + " and " + v_text(worst_i) + " staying " + short_text(gap) + " apart";
     }
     /// Where two curves that miss each other at their nodes really meet.
     std::string meeting(const Family& u, const Family& v, int j, int i, double size) const {
@@ -211,14 +217,17 @@ private:
     }
     std::string changes_text(const NetworkRepair& r) const {
         std::string text;
+        int count = 0;
         const auto list = [&](const Repair& f, bool along_u) {
             for (std::size_t k = 0; k < f.order.size(); ++k) {
                 const auto name = [&](bool u, int index) { return u ? u_text(index) : v_text(index); };
-                append(text, doctor::change_text(name(along_u, int(k)), name(along_u != r.swapped, f.order[k]), f.reversed[k]));
+                const std::string change = doctor::change_text(name(along_u, int(k)), name(along_u != r.swapped, f.order[k]), f.reversed[k]);
+                if (!change.empty() && ++count <= kMostChangesTold) append(text, change);
             }
         };
         list(r.u, true);
         list(r.v, false);
+        if (count > kMostChangesTold) append(text, "and " + std::to_string(count - kMostChangesTold) + " more");
         return text;
     }
 

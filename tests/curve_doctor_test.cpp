@@ -11,7 +11,6 @@
 #include "curves/line.h"
 #include "curves/modify.h"
 #include "error.h"
-#include "patches/network.h"
 #include "patches/side_vertex.h"
 #include "samples.h"
 
@@ -238,103 +237,6 @@ TEST(CurveDoctor, LeavesHermiteDataOfAnotherSpeedAlone) {
     EXPECT_FALSE(d.repair);
     EXPECT_TRUE(contains(d.misfit, "f[1] and the derivative of g[0] at (0,0) differ by ")) << d.misfit;
     EXPECT_TRUE(contains(d.misfit, "(0.5 times it: reparametrise the one or scale the other)")) << d.misfit;
-}
-
-// ---- networks -------------------------------------------------------------------------------------------------------
-/// u_curves and v_curves of a polynomial surface at the nodes.
-CurveNetwork random_network(Random& random, const std::vector<double>& u_nodes, const std::vector<double>& v_nodes) {
-    const auto p = random_net(random, 4, 4);
-    const auto b = [](const std::vector<Point>& q, double t) { return make_bezier(q)(t); };
-    const double u1 = u_nodes.back(), v1 = v_nodes.back();
-    CurveNetwork n{{}, {}, u_nodes, v_nodes};
-    for (double v : v_nodes) {
-        std::vector<Point> q;
-        for (int i = 0; i < 4; ++i) q.push_back(b(p[i], v / v1));
-        n.u_curves.push_back(reparametrized(make_bezier(q), 0, u1));
-    }
-    for (double u : u_nodes) {
-        std::vector<Point> q;
-        for (int j = 0; j < 4; ++j) q.push_back(b({p[0][j], p[1][j], p[2][j], p[3][j]}, u / u1));
-        n.v_curves.push_back(reparametrized(make_bezier(q), 0, v1));
-    }
-    return n;
-}
-CurveNetwork repaired(const CurveNetwork& given, const NetworkRepair& r) {
-    CurveNetwork n = given;
-    n.u_curves = r.u(r.swapped ? given.v_curves : given.u_curves);
-    n.v_curves = r.v(r.swapped ? given.u_curves : given.v_curves);
-    return n;
-}
-void shuffle(Random& random, std::vector<Curve>& curves) {
-    for (std::size_t k = curves.size(); k > 1; --k) std::swap(curves[k - 1], curves[random.integer(0, int(k) - 1)]);
-    for (Curve& c : curves)
-        if (random.integer(0, 1)) c = reversed(c);
-}
-TEST(CurveDoctor, RepairsNetworksInAnyOrderAndDirection) {
-    Random random(7);
-    int repairs = 0;
-    for (int k = 0; k < 60; ++k) {
-        const bool even = k % 2;
-        const CurveNetwork right = even ? random_network(random, {0, 1, 2, 3}, {0, 1, 2}) : random_network(random, {0, 0.3, 0.5, 1}, {0, 0.2, 0.7, 0.9, 1});
-        ASSERT_TRUE(diagnose_network(right).fits);
-        CurveNetwork given = right;
-        shuffle(random, given.u_curves);
-        shuffle(random, given.v_curves);
-        if (k % 3 == 0) std::swap(given.u_curves, given.v_curves);
-        const auto d = diagnose_network(given);
-        if (d.fits) continue;
-        ASSERT_TRUE(d.repair) << d.misfit;
-        ++repairs;
-        EXPECT_EQ(d.repair->swapped, k % 3 == 0);
-        const CurveNetwork fixed = repaired(given, *d.repair);
-        EXPECT_TRUE(diagnose_network(fixed).fits) << d.changes;
-        if (!even) continue;
-        EXPECT_NO_THROW(make_network({fixed.v_curves, fixed.u_curves}));
-    }
-    EXPECT_GE(repairs, 55);
-}
-TEST(CurveDoctor, ChangesNoMoreOfANetworkThanIsNeeded) {
-    Random random(8);
-    CurveNetwork n = random_network(random, {0, 1, 2, 3}, {0, 1, 2});
-    n.u_curves[1] = reversed(n.u_curves[1]);
-    EXPECT_EQ(diagnose_network(n).changes, "u_curves[1] reversed");
-    std::swap(n.v_curves[1], n.v_curves[2]);
-    const auto d = diagnose_network(n);
-    EXPECT_EQ(d.changes, "u_curves[1] reversed, v_curves[1] from v_curves[2], v_curves[2] from v_curves[1]");
-    EXPECT_TRUE(contains(d.misfit, "of 12 crossings are open")) << d.misfit;
-}
-TEST(CurveDoctor, RepairsANetworkWithAPole) {
-    // Rays and arcs of a disc: the first v-curve is its centre.
-    CurveNetwork n{{}, {}, {0, 0.5, 1}, {0, 1, 2}};
-    std::vector<Point> rim{{1, 0, 0}, {0.7, 0.7, 0.1}, {0, 1, 0}};
-    for (const Point& p : rim) n.u_curves.push_back(line({0, 0, 0}, p));
-    for (double u : n.u_nodes) n.v_curves.push_back(reparametrized(make_bezier({u * rim[0], u * (2.0 * rim[1] - 0.5 * (rim[0] + rim[2])), u * rim[2]}), 0, 2));
-    ASSERT_TRUE(diagnose_network(n).fits);
-    std::swap(n.u_curves[0], n.u_curves[1]);
-    n.v_curves[2] = reversed(n.v_curves[2]);
-    const auto d = diagnose_network(n);
-    ASSERT_TRUE(d.repair) << d.misfit;
-    EXPECT_TRUE(diagnose_network(repaired(n, *d.repair)).fits);
-}
-TEST(CurveDoctor, SaysWhereCurvesOfANetworkReallyMeet) {
-    Random random(9);
-    CurveNetwork n = random_network(random, {0, 0.5, 1}, {0, 1});
-    n.u_nodes[1] = 0.4;
-    const auto d = diagnose_network(n);
-    EXPECT_FALSE(d.repair);
-    EXPECT_TRUE(contains(d.misfit, "u_curves[0] meets v_curves[1] (distance ")) << d.misfit;
-    EXPECT_TRUE(contains(d.misfit, ", sampled) at u = 0.5, v = 0, but the node is u = 0.4, v = 0: reparametrise it or move the node")) << d.misfit;
-}
-TEST(CurveDoctor, LeavesANetworkWithAGapAlone) {
-    Random random(10);
-    CurveNetwork n = random_network(random, {0, 1, 2}, {0, 1, 2});
-    n.v_curves[1] = transformed(n.v_curves[1], Transform::translate({0, 0, 1e-3}));
-    n.u_curves[0] = reversed(n.u_curves[0]);
-    const auto d = diagnose_network(n);
-    EXPECT_FALSE(d.repair);
-    EXPECT_TRUE(contains(d.misfit, "at best (u_curves[0] reversed)")) << d.misfit;
-    EXPECT_TRUE(contains(d.misfit, "stay 0.001 apart")) << d.misfit;
-    EXPECT_TRUE(contains(d.misfit, "do not meet (sampled): they come no nearer than ")) << d.misfit;
 }
 
 }  // namespace
