@@ -3,6 +3,7 @@
 #include "patches/ruled.h"
 #include "patches/translational.h"
 #include "registry.h"
+#include "repair.h"
 
 namespace isoparm {
 
@@ -19,15 +20,18 @@ SplineCurve spline(const Json& j, SceneBuilder& scene, const char* key) {
 
 }  // namespace
 
-BuiltSurface build_translational_blend(const Json& j, SceneBuilder& scene) { return make_translational_blend(frame_of(j, scene)); }
+BuiltSurface build_translational_blend(const Json& j, SceneBuilder& scene) {
+    return fitted(frame_of(j, scene), j, scene, [](const CoonsCurves& c) { return make_translational_blend(c); });
+}
 
 BuiltSurface build_translational(const Json& j, SceneBuilder& scene) {
-    return make_translational(curve(j, scene, "c", "the curve along u"), curve(j, scene, "d", "the curve along v"));
+    const CommonStart curves{curve(j, scene, "c", "the curve along u"), curve(j, scene, "d", "the curve along v")};
+    return fitted(curves, j, scene, [](const CommonStart& s) { return make_translational(s.c, s.d); });
 }
 
 BuiltSurface build_control_net(const Json& j, SceneBuilder& scene) {
     const ControlFrame frame{spline(j, scene, "c0"), spline(j, scene, "c1"), spline(j, scene, "d0"), spline(j, scene, "d1")};
-    return {make_control_net(frame), net_of(coons_net(frame))};
+    return fitted(frame, j, scene, [](const ControlFrame& f) { return BuiltSurface(make_control_net(f), net_of(coons_net(f))); });
 }
 
 BuiltSurface build_ruled(const Json& j, SceneBuilder& scene) {

@@ -47,6 +47,10 @@ public:
     /// Surfaces that another one was made of.
     const std::set<std::string>& used_surfaces() const { return used_; }
 
+    /// Something that was done to a definition and that its author should know; each is kept once.
+    void note(const Json& definition, const std::string& text);
+    const std::vector<std::string>& notes() const { return notes_; }
+
 private:
     BuiltCurve build_curve(const Json& definition);
     BuiltSurface build_surface(const Json& definition);
@@ -60,6 +64,7 @@ private:
     std::map<std::string, BuiltSurface> built_surfaces_;
     std::vector<std::string> in_progress_;
     std::set<std::string> used_;
+    std::vector<std::string> notes_;
 };
 
 }  // namespace isoparm
