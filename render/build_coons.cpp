@@ -52,8 +52,8 @@ std::vector<double> nodes(const Json& j, const char* key, const SceneValues& val
 }  // namespace
 
 CoonsCurves frame_of(const Json& j, SceneBuilder& scene) {
-    const auto curve = [&](const char* key, const char* meaning) { return scene.curve(j.at(key, meaning)).curve; };
-    return {curve("c0", "the curve x(u,0)"), curve("c1", "the curve x(u,1)"), curve("d0", "the curve x(0,v)"), curve("d1", "the curve x(1,v)")};
+    return {scene.curve(j, "c0", "the curve x(u,0)"), scene.curve(j, "c1", "the curve x(u,1)"), scene.curve(j, "d0", "the curve x(0,v)"),
+            scene.curve(j, "d1", "the curve x(1,v)")};
 }
 
 BuiltSurface build_coons(const Json& j, SceneBuilder& scene) {

@@ -34,6 +34,8 @@ public:
     const SceneValues& values() const { return values_; }
     /// A curve or surface given by its name or on the spot.
     BuiltCurve curve(const Json& reference);
+    /// The curve under a key of a definition, which must be there; `meaning` for the message when it is not.
+    Curve curve(const Json& definition, const char* key, const char* meaning) { return curve(definition.at(key, meaning)).curve; }
     BuiltSurface surface(const Json& reference);
     /// A definition under "curves" or "surfaces".
     BuiltCurve named_curve(const Json& definition);

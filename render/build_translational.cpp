@@ -1,6 +1,5 @@
-// build_ruled.cpp -- surfaces that a scene file gives by curves to move: ruled, cone, translational, discrete Coons nets.
+// build_translational.cpp -- surfaces that a scene file gives by curves to move or to blend as control polygons.
 #include "patches/control_net.h"
-#include "patches/ruled.h"
 #include "patches/translational.h"
 #include "registry.h"
 #include "repair.h"
@@ -8,8 +7,6 @@
 namespace isoparm {
 
 namespace {
-
-Curve curve(const Json& j, SceneBuilder& scene, const char* key, const char* meaning) { return scene.curve(j.at(key, meaning)).curve; }
 
 SplineCurve spline(const Json& j, SceneBuilder& scene, const char* key) {
     const Json reference = j.at(key, "a bezier, bspline or line curve");
@@ -25,21 +22,13 @@ BuiltSurface build_translational_blend(const Json& j, SceneBuilder& scene) {
 }
 
 BuiltSurface build_translational(const Json& j, SceneBuilder& scene) {
-    const CommonStart curves{curve(j, scene, "c", "the curve along u"), curve(j, scene, "d", "the curve along v")};
+    const CommonStart curves{scene.curve(j, "c", "the curve along u"), scene.curve(j, "d", "the curve along v")};
     return fitted(curves, j, scene, [](const CommonStart& s) { return make_translational(s.c, s.d); });
 }
 
 BuiltSurface build_control_net(const Json& j, SceneBuilder& scene) {
     const ControlFrame frame{spline(j, scene, "c0"), spline(j, scene, "c1"), spline(j, scene, "d0"), spline(j, scene, "d1")};
     return fitted(frame, j, scene, [](const ControlFrame& f) { return BuiltSurface(make_control_net(f), net_of(coons_net(f))); });
-}
-
-BuiltSurface build_ruled(const Json& j, SceneBuilder& scene) {
-    return make_ruled(curve(j, scene, "c0", "the curve x(u,0)"), curve(j, scene, "c1", "the curve x(u,1)"));
-}
-
-BuiltSurface build_cone(const Json& j, SceneBuilder& scene) {
-    return make_cone(curve(j, scene, "curve", "the curve x(u,0)"), scene.values().point(j.at("apex", "the apex [x, y, z]")));
 }
 
 }  // namespace isoparm
