@@ -29,7 +29,7 @@ const Point kShift{100, 0, 0};
 
 using Weights = std::array<double, 4>;
 /// Cubic Hermite polynomials: value, derivative at 0, derivative, value at 1.
-Weights hermite(double t) { return HermiteBasis{}(t); }
+Weights hermite(double t) { return {2 * t * t * t - 3 * t * t + 1, t * t * t - 2 * t * t + t, t * t * t - t * t, 3 * t * t - 2 * t * t * t}; }
 double lagrange(int k, int last, double t) {
     double product = 1;
     for (int s = 0; s <= last; ++s)

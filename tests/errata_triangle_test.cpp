@@ -7,7 +7,6 @@
 #include "curves/modify.h"
 #include "patches/bbg.h"
 #include "patches/bezier_triangle.h"
-#include "patches/boolean_sum.h"
 #include "patches/side_vertex.h"
 #include "patches/three_curves.h"
 #include "samples.h"
@@ -250,8 +249,8 @@ TEST(Errata, BbgC1ProjectorsHaveTheirOwnParametersAndDirections) {
         x2 = [&](double u, double v) { return (1 - v) * c.slope(-1, 0, u, v); },                 // (u+w) D_{e3-e1}
         x3 = [&](double u, double v) { return (u + v) * c.slope(-1, 1, u, v); };                 // (u+v) D_{e2-e1}
     const auto blend = [](double t, const Point& a, const Point& b, const Point& p, const Point& q) {
-        const auto h = HermiteBasis{}(t);
-        return h[0] * a + h[1] * b + h[2] * p + h[3] * q;
+        const double t2 = t * t, t3 = t2 * t;
+        return (2 * t3 - 3 * t2 + 1) * a + (t3 - 2 * t2 + t) * b + (t3 - t2) * p + (3 * t2 - 2 * t3) * q;
     };
     const auto P2 = [&](bool own_parameter, bool own_direction) -> Surface {
         return [=](double u, double v, double w) {

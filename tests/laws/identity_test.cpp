@@ -10,6 +10,7 @@
 #include "curves/hermite.h"
 #include "curves/isocurve.h"
 #include "curves/modify.h"
+#include "patches/basis.h"
 #include "patches/control_net.h"
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
@@ -86,7 +87,7 @@ struct Hat {
     bool slope;
     template <class S> S operator()(const S& t) const {
         const S right = t - node, left = right + 1.0, zero(0.0);
-        const auto h = HermiteBasis{}(right), g = HermiteBasis{}(left);
+        const auto h = hermite_polynomials(right), g = hermite_polynomials(left);
         const S rise = choose(Comparison::less, left, zero, zero, slope ? g[2] : g[3], true),
                 fall = choose(Comparison::greater, right, S(1.0), zero, slope ? h[1] : h[0], true);
         return choose(Comparison::less, right, zero, rise, fall, true);

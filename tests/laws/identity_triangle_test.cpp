@@ -83,7 +83,7 @@ void expect_degree(const Patch& x, int degree) {
             Point sum;
             double binomial = 1;
             for (int k = 0; k <= order; ++k) {
-                const double t = 0.4 * k / order;
+                const double t = 0.25 * k / order;  // stays inside the triangle
                 sum += (k % 2 ? -binomial : binomial) * x.point(0.32 + t * du, 0.2 + t * dv);
                 binomial = binomial * (order - k) / (k + 1);
             }
