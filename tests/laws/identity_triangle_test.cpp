@@ -54,7 +54,10 @@ struct Net {
     Patch patch() const { return make_bezier_triangle(n, points); }
     std::array<Curve, 3> edges() {
         std::vector<Point> e1, e2, e3;
-        for (int s = 0; s <= n; ++s) e1.push_back((*this)(0, n - s, s)), e2.push_back((*this)(s, 0, n - s)), e3.push_back((*this)(n - s, s, 0));
+        for (int s = 0; s <= n; ++s) {
+            e1.push_back((*this)(0, n - s, s)), e2.push_back((*this)(s, 0, n - s));
+            e3.push_back((*this)(n - s, s, 0));
+        }
         return {make_bezier(e1), make_bezier(e2), make_bezier(e3)};
     }
     /// D_k: derivative along E_k in the direction of the median; b_ijk - b_.. by its differences.
@@ -62,7 +65,7 @@ struct Net {
         std::array<std::vector<Point>, 3> d;
         for (int s = 0; s < n; ++s) {
             const int t = n - 1 - s;
-            const auto median = [&](const Point& to, const Point& one, const Point& other) { return double(n) * (to - 0.5 * (one + other)); };
+            const auto median = [&](const Point& to, const Point& p, const Point& q) { return double(n) * (to - 0.5 * (p + q)); };
             d[0].push_back(median((*this)(1, t, s), (*this)(0, t + 1, s), (*this)(0, t, s + 1)));
             d[1].push_back(median((*this)(s, 1, t), (*this)(s + 1, 0, t), (*this)(s, 0, t + 1)));
             d[2].push_back(median((*this)(t, s, 1), (*this)(t + 1, s, 0), (*this)(t, s + 1, 0)));
@@ -106,7 +109,9 @@ TEST(Identity, SideVertexOfQuadraticsIsTheBezierTriangle) {  // Proposition 2
 TEST(Identity, SideVertexFormsAgreeForQuadraticBlendsOnly) {
     each_seed([](Random& r) {
         const auto e = Net(3, r).edges();
-        const auto gap = [&](const Function& H) { return difference(make_side_vertex(e, H), make_side_vertex(e, H, SideVertexForm::seed)); };
+        const auto gap = [&](const Function& H) {
+            return difference(make_side_vertex(e, H), make_side_vertex(e, H, SideVertexForm::seed));
+        };
         for (double c : {0.0, 1.0, -1.5, 0.3}) EXPECT_LE(gap(Function::polynomial({0, 1 + c, -c})), kTolerance) << c;
         EXPECT_GE(gap(Function::polynomial({0, 0, 0, 2, -1})), 1e-3);
         EXPECT_GE(gap(Function::polynomial({0, 0, 3, -2})), 1e-3);
@@ -154,7 +159,9 @@ TEST(Identity, BbgFormsAreCombinationsOfTheirProjectors) {
         const Corners c(e);
         const Patch P[] = {make_bbg(e, {Kind::projector, 1}), make_bbg(e, {Kind::projector, 2}), make_bbg(e, {Kind::projector, 3})};
         EXPECT_LE(difference(make_bbg(e, {Kind::convex}),
-                             [&](double u, double v, double w) { return u * P[0].point(u, v) + v * P[1].point(u, v) + w * P[2].point(u, v); }),
+                             [&](double u, double v, double w) {
+                                 return u * P[0].point(u, v) + v * P[1].point(u, v) + w * P[2].point(u, v);
+                             }),
                   kTolerance);
         EXPECT_LE(difference(make_bbg(e, {Kind::symmetric}),
                              [&](double u, double v, double w) {
@@ -181,11 +188,13 @@ TEST(Identity, SymmetricBbgOfCubicsIsACubicBezierTriangle) {
 TEST(Identity, PrecisionOfTheC0Surfaces) {
     each_seed([](Random& r) {
         Net one(1, r), two(2, r), three(3, r);
-        const auto gap = [](Net& b, const std::function<Patch(const std::array<Curve, 3>&)>& make) { return difference(make(b.edges()), b.patch()); };
         using Make = std::function<Patch(const std::array<Curve, 3>&)>;
-        const Make linear[] = {[](const auto& e) { return make_three_curves(e); }, [](const auto& e) { return make_bbg(e, {Kind::convex}); },
+        const auto gap = [](Net& b, const Make& make) { return difference(make(b.edges()), b.patch()); };
+        const Make linear[] = {[](const auto& e) { return make_three_curves(e); },
+                               [](const auto& e) { return make_bbg(e, {Kind::convex}); },
                                [](const auto& e) { return make_side_vertex(e, Function::polynomial({0, 1})); }},
-                   quadratic[] = {[](const auto& e) { return make_bbg(e, {Kind::boolean, 1, 2}); }, [](const auto& e) { return make_bbg(e, {Kind::boolean, 3, 2}); },
+                   quadratic[] = {[](const auto& e) { return make_bbg(e, {Kind::boolean, 1, 2}); },
+                                  [](const auto& e) { return make_bbg(e, {Kind::boolean, 3, 2}); },
                                   [](const auto& e) { return make_bbg(e, {Kind::symmetric}); },
                                   [](const auto& e) { return make_side_vertex(e, Function::polynomial({0, 0, 1})); }};
         for (const auto& make : linear) {
@@ -221,8 +230,9 @@ TEST(Identity, C1SurfacesAreCombinationsOfTheirParts) {
         const auto weight = [](double a, double b2, double c) { return a * a * (3 - 2 * a + 6 * b2 * c); };
         EXPECT_LE(difference(make_bbg_c1(e, d),
                              [&](double u, double v, double w) {
-                                 EXPECT_NEAR(weight(u, v, w) + weight(v, w, u) + weight(w, u, v), 1, 1e-14);
-                                 return weight(u, v, w) * P[0].point(u, v) + weight(v, w, u) * P[1].point(u, v) + weight(w, u, v) * P[2].point(u, v);
+                                 const double p = weight(u, v, w), q = weight(v, w, u), s = weight(w, u, v);
+                                 EXPECT_NEAR(p + q + s, 1, 1e-14);
+                                 return p * P[0].point(u, v) + q * P[1].point(u, v) + s * P[2].point(u, v);
                              }),
                   kTolerance);
         const Corners c(e);
