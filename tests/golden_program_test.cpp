@@ -265,8 +265,7 @@ void expect_equal(const Value& found, const Value& expected, double size) {
 
 class GoldenProgram : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(GoldenProgram, EvalOfASceneTellsTheGoldenNumbers) {
-    const Value& e = golden()["surfaces"][GetParam()];
+void expect_eval(const std::string& scene_text, const Value& e) {
     std::string at;
     std::vector<Value> expected;
     const auto ask = [&](const Value& u, const Value& v, const Value& answer) {
@@ -278,13 +277,51 @@ TEST_P(GoldenProgram, EvalOfASceneTellsTheGoldenNumbers) {
 
     const TemporaryFolder folder;
     const std::string scene = folder / "scene.json";
-    write_all(scene, scene_of(GetParam(), e["data"]));
+    write_all(scene, scene_text);
     const Outcome o = run("eval '" + scene + "' --surface S --json" + at);
-    ASSERT_EQ(o.code, 0) << o.err << read_all(scene);
+    ASSERT_EQ(o.code, 0) << o.err << scene_text;
     Value answer;
     std::istringstream(o.out) >> answer;
     ASSERT_EQ(answer["points"].size(), expected.size());
     for (int k = 0; k < int(expected.size()); ++k) expect_equal(answer["points"][k], expected[k], magnitude(e["data"]));
+}
+
+TEST_P(GoldenProgram, EvalOfASceneTellsTheGoldenNumbers) {
+    const Value& e = golden()["surfaces"][GetParam()];
+    expect_eval(scene_of(GetParam(), e["data"]), e);
+}
+
+TEST(GoldenTypes, TheBilinearCoonsPatchByOtherTypes) {
+    const Value &e = golden()["surfaces"]["coons_bilinear"], &d = e["data"];
+    for (const char* type : {"control_net", "translational_blend"}) {
+        SCOPED_TRACE(type);
+        SceneText t;
+        t.surface()["type"] = type;
+        coons(t, d);
+        expect_eval(t.string(), e);
+    }
+    SceneText net, generalized, gordon;
+    net.bezier_surface("S", e["discrete_coons_net"]);
+    expect_eval(net.string(), e);
+
+    Value value[2];
+    for (int k : {0, 1}) value[k]["value"] = k;
+    Value& s = generalized.surface();
+    s["type"] = "generalized_coons";
+    for (const char* along : {"u", "v"}) {
+        s[along]["functionals"] = list(value[0], value[1]);
+        s[along]["blends"] = list("1 - t", "t");
+    }
+    s["f"] = generalized.curves(list(d["d0"], d["d1"]));
+    s["g"] = generalized.curves(list(d["c0"], d["c1"]));
+    expect_eval(generalized.string(), e);
+
+    Value& g = gordon.surface();
+    g["type"] = "gordon";
+    g["u_curves"] = gordon.curves(list(d["c0"], d["c1"]));
+    g["v_curves"] = gordon.curves(list(d["d0"], d["d1"]));
+    g["u_nodes"] = g["v_nodes"] = list(0, 1);
+    expect_eval(gordon.string(), e);
 }
 
 INSTANTIATE_TEST_SUITE_P(Surface, GoldenProgram, ::testing::ValuesIn(golden()["surfaces"].getMemberNames()), [](const auto& info) {
