@@ -301,11 +301,6 @@ PatchSample ruled(Random& r, Curve (*between)(Random&, const Point&, const Point
     const Frame e = random_frame(r, between);
     return {make_ruled(e.c0, e.c1), {e.c0, make_line(e.c0(1), e.c1(1)), e.c1, make_line(e.c0(0), e.c1(0))}};
 }
-PatchSample cone_over(Random& r, const Curve& c) {
-    const Point apex = r.point({1, 1, 2});
-    const double a = c.begin(), b = c.end();
-    return {make_cone(c, apex), {c, make_line(c(b), apex), make_line(apex, apex), make_line(c(a), apex)}};
-}
 
 // ---- surfaces on a triangle -----------------------------------------------------------------------------------------
 PatchSample bezier_triangle(Random& r, int degree, bool rational) {
@@ -488,8 +483,6 @@ const std::vector<PatchType>& patch_types() {
         {"translational_blend", translational_blend},
         {"ruled", [](Random& r) { return ruled(r, random_cubic); }},
         {"ruled_of_rationals", [](Random& r) { return ruled(r, rational_cubic); }},
-        {"cone", [](Random& r) { return cone_over(r, random_cubic(r, r.point(), r.point({2, 0, 0}))); }},
-        {"cone_of_nurbs", [](Random& r) { return cone_over(r, nurbs(r)); }},
         {"bezier_triangle", [](Random& r) { return bezier_triangle(r, 4, false); }},
         {"bezier_triangle_rational", [](Random& r) { return bezier_triangle(r, 3, true); }},
         {"side_vertex_t", [](Random& r) { return side_vertex<kDelta>(r, kT); }, true, false},
