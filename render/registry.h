@@ -41,6 +41,8 @@ BuiltSurface build_bezier_triangle(const Json&, SceneBuilder&);
 BuiltSurface build_coons(const Json&, SceneBuilder&);
 BuiltSurface build_coons_hermite(const Json&, SceneBuilder&);
 BuiltSurface build_network(const Json&, SceneBuilder&);
+
+// build_triangles.cpp: of three edges
 BuiltSurface build_coons_triangle(const Json&, SceneBuilder&);
 
 // build_composites.cpp: of surfaces

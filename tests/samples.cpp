@@ -408,7 +408,7 @@ const std::vector<PatchType>& patch_types() {
         {"nielson_c1", [](Random& r) { return with_cross(r, nielson_c1); }},
         {"nielson_c1_T1", [](Random& r) { return with_cross(r, nielson_c1, 1); }},
         {"nielson_c1_T2", [](Random& r) { return with_cross(r, nielson_c1, 2); }},
-        {"nielson_c1_waves", [](Random& r) { return with_cross(r, nielson_c1, 0, wave); }},
+        {"nielson_c1_rational", [](Random& r) { return with_cross(r, nielson_c1, 0, rational_cubic); }},
         {"nielson_g1", nielson_g1, true, false},
         {"transformed",
          [](Random& r) {
