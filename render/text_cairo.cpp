@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "error.h"
+#include "suggest.h"
 
 namespace isoparm {
 namespace {
@@ -22,19 +23,6 @@ using Context = std::unique_ptr<cairo_t, Release<cairo_destroy>>;
 using Layout = std::unique_ptr<PangoLayout, Release<g_object_unref>>;
 using Font = std::unique_ptr<PangoFontDescription, Release<pango_font_description_free>>;
 using FontOptions = std::unique_ptr<cairo_font_options_t, Release<cairo_font_options_destroy>>;
-
-/// Pango ends the program when there is no font at all.
-void require_fonts() {
-    static const bool some = [] {
-        PangoFontFamily** families = nullptr;
-        int count = 0;
-        pango_font_map_list_families(pango_cairo_font_map_get_default(), &families, &count);
-        g_free(families);
-        return count > 0;
-    }();
-    if (!some)
-        throw Error(ErrorKind::io, "no font was found for the labels of the picture, expected at least one; install one (Debian, Ubuntu: apt-get install fonts-stix)");
-}
 
 void check(cairo_t* c) {
     if (const auto status = cairo_status(c); status != CAIRO_STATUS_SUCCESS)
@@ -63,7 +51,6 @@ Layout layout_of(cairo_t* c, const TextRun& run, double size) {
 
 /// Puts the outlines on the context's path, from (x,y) on.
 TextBox set(cairo_t* c, const MathText& text, double size, double x, double y) {
-    require_fonts();
     TextBox box{INFINITY, INFINITY, -INFINITY, -INFINITY, 0};
     double pen = x, subscript = x, furthest = x;
     bool slanted = false;
@@ -74,6 +61,8 @@ TextBox set(cairo_t* c, const MathText& text, double size, double x, double y) {
         else if (slanted && !run.italic) pen += 0.04 * size * run.scale;  // a slanted letter leans over what follows
         slanted = run.italic;
         const Layout layout = layout_of(c, run, size);
+        if (pango_layout_get_unknown_glyphs_count(layout.get()) > 0)
+            throw Error(ErrorKind::io, "no font was found that has all letters of " + quoted(run.text) + " in a label, expected one; install one (Debian, Ubuntu: apt-get install fonts-stix)");
         PangoLayoutLine* line = pango_layout_get_line_readonly(layout.get(), 0);
         PangoRectangle ink, logical;
         pango_layout_line_get_extents(line, &ink, &logical);

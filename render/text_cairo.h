@@ -14,7 +14,7 @@ struct Coverage {
     int x0 = 0, y0 = 0, width = 0, height = 0;
     std::vector<std::uint8_t> part;  // width * height, rows from the top
 };
-/// Within a picture of width x height pixels. Throws Error(io) when no font is installed.
+/// Within a picture of width x height pixels. Throws Error(io) when no font has the letters.
 Coverage coverage(const Polyline& line, int width, int height);
 Coverage coverage(const Filled& area, int width, int height);
 /// Of the letters, made fatter by `rim` pixels on every side.
