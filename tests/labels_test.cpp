@@ -327,6 +327,27 @@ TEST(FlatLines, OnASurfaceAreNotHiddenByIt) {
     EXPECT_LE(points.size(), 4u) << "straight";
 }
 
+TEST(FlatLines, DotsBoundariesAndNets) {
+    Scene scene = from_above(4, 100, 100, 4);
+    scene.camera.orthographic = 4;
+    SceneObject& dot = add(scene, Kind::point);
+    dot.point = {1.5, 1.5, 0};
+    dot.line.width = 10;
+    EXPECT_NEAR(sum(render(scene, {}).image, 3), 25 * std::numbers::pi, 2);
+    scene.objects.clear();
+    SceneObject& sheet = add_sheet(scene, 0, 0);  // 50 pixels a side
+    sheet.boundary = true;
+    sheet.line.width = 2;
+    EXPECT_NEAR(sum(render(scene, {}).image, 3), 4 * 50 * 2, 8);
+    scene.objects.clear();
+    SceneObject& net = add(scene, Kind::net);
+    net.net.points = {{-1, 0, 0}, {1, 0, 0}};
+    net.net.rods = {{0, 1}};
+    net.radius = 1e-3;
+    net.line.width = 2;
+    EXPECT_NEAR(sum(render(scene, {}).image, 3), 50 * 2 + std::numbers::pi, 3);
+}
+
 // ---- axes -----------------------------------------------------------------------------------------------------------
 
 TEST(Axes, TicksAreRoundAndNotTooClose) {
