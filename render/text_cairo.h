@@ -1,5 +1,5 @@
 // text_cairo.h -- how much of each pixel a line, an area or a text covers. text_cairo.cpp is the only file that
-// includes Cairo and Pango; linking them costs 6 ms at the start of the program, loading them when needed would save
+// includes Cairo and Pango; linking them costs 8 ms at the start of the program, loading them when needed would save
 // less than it complicates.
 #pragma once
 #include <cstdint>
