@@ -107,6 +107,7 @@ std::vector<Label> read_net_labels(const Json& j, const SceneValues& values, con
     const Json letter = j.is(Kind::object) ? j.at("text", "the letter of the points, such as \"P\"") : j;
     read_math_text(letter, values, false);
     if (letter.string().find_first_of("_$") != std::string::npos) letter.expected("a letter without _ and $, to which the indices are added");
+    if (net.indices.size() != net.points.size()) j.expected("no labels: the points of this net have no indices");
     std::vector<Label> labels(net.points.size(), look);
     for (std::size_t i = 0; i < labels.size(); ++i) labels[i].text = parse_math_text(letter.string() + "_{" + net.indices[i] + "}");
     return labels;
