@@ -58,48 +58,52 @@ public:
     }
 
 private:
+    /// What a ray of the pixel met, and as which of its layers.
+    struct Met {
+        Hit hit;
+        int ray, layer;
+    };
     void add_nearest(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba& sum) const {
         Hit hits[EmbreeScene::packet];
-        Surfel surfels[EmbreeScene::packet];
-        Color light[EmbreeScene::packet];
         scene_.embree->intersect(rays, n, hits);
-        int found = 0;
+        std::vector<Met> met;
         for (int i = 0; i < n; ++i)
-            if (hits[i].found()) surfels[found++] = surfel(rays[i], hits[i], first + i, 0);
-        lighting_.shade(*scene_.embree, sampler, surfels, found, light);
-        for (int i = 0; i < found; ++i) {
-            Rgba seen;
-            add(surfels[i], light[i], seen);
-            sum.color += seen.color;
-            sum.alpha += seen.alpha;
-        }
+            if (hits[i].found()) met.push_back({hits[i], i, 0});
+        add_light(sampler, rays, first, n, met, sum);
     }
-
     void add_layers(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba& sum) const {
         std::vector<Hit> hits;
-        Surfel surfels[EmbreeScene::packet];
-        Color light[EmbreeScene::packet];
+        std::vector<Met> met;
         for (int i = 0; i < n; ++i) {
-            Rgba seen;
             scene_.embree->layers(rays[i], hits);
-            for (std::size_t next = 0; next < hits.size();) {
-                int found = 0;
-                for (; found < EmbreeScene::packet && next < hits.size(); ++found, ++next)
-                    surfels[found] = surfel(rays[i], hits[next], first + i, static_cast<int>(next));
-                lighting_.shade(*scene_.embree, sampler, surfels, found, light);
-                for (int k = 0; k < found; ++k) add(surfels[k], light[k], seen);
+            for (std::size_t k = 0; k < hits.size(); ++k) met.push_back({hits[k], i, static_cast<int>(k)});
+        }
+        add_light(sampler, rays, first, n, met, sum);
+    }
+    /// Layers of a ray come from front to back.
+    void add_light(const PixelSampler& sampler, const Ray* rays, int first, int n, const std::vector<Met>& met, Rgba& sum) const {
+        Rgba seen[EmbreeScene::packet];
+        for (std::size_t begin = 0; begin < met.size(); begin += EmbreeScene::packet) {
+            const int count = static_cast<int>(std::min<std::size_t>(EmbreeScene::packet, met.size() - begin));
+            Ray by[EmbreeScene::packet];
+            Hit hits[EmbreeScene::packet];
+            for (int k = 0; k < count; ++k) by[k] = rays[met[begin + k].ray], hits[k] = met[begin + k].hit;
+            Surfel surfels[EmbreeScene::packet];
+            surfels_at(scene_, camera_, by, hits, count, surfels);
+            for (int k = 0; k < count; ++k) {
+                surfels[k].sample = first + met[begin + k].ray;
+                surfels[k].dimension = 1 + 2 * met[begin + k].layer;
             }
-            sum.color += seen.color;
-            sum.alpha += seen.alpha;
+            Color light[EmbreeScene::packet];
+            lighting_.shade(*scene_.embree, sampler, surfels, count, light);
+            for (int k = 0; k < count; ++k) add(surfels[k], light[k], seen[met[begin + k].ray]);
+        }
+        for (int i = 0; i < n; ++i) {
+            sum.color += seen[i].color;
+            sum.alpha += seen[i].alpha;
         }
     }
 
-    Surfel surfel(const Ray& ray, const Hit& hit, int sample, int layer) const {
-        Surfel s = surfel_at(scene_, camera_, ray, hit);
-        s.sample = sample;
-        s.dimension = 1 + 2 * layer;
-        return s;
-    }
     static void add(const Surfel& s, const Color& light, Rgba& seen) {
         if (s.ink_cover > 0) seen.add_behind(s.ink, s.ink_cover);
         seen.add_behind(light, s.opacity);

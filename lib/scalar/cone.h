@@ -102,6 +102,13 @@ template <class HF, class G, class A, class B> auto cone(const HF& H, const G& g
     }
     auto result = H(r) * g(tau);
     using C = Components<decltype(result)>;
+    if constexpr (std::is_same_v<T, Pack>) {  // derivatives at r = 0 are for numbers and intervals only
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        for (int lane = 0; lane < Pack::lanes; ++lane)
+            if (r.c[0][lane] == 0)
+                for (int i = 0; i < C::count; ++i)
+                    for (int k = 1; k < R::size; ++k) C::get(result, i).c[k].set(lane, none);
+    }
     if constexpr (std::is_same_v<T, Interval> || std::is_same_v<T, double>) {
         if constexpr (std::is_same_v<T, double>)
             if (r.c[0] != 0) return result;
