@@ -85,7 +85,7 @@ private:
         const Mesh& mesh = mesh_of(surface, objects);
         Thing thing;
         thing.front = o.color.value_or(surface_color(surfaces_++));
-        thing.back = back_color(thing.front);
+        thing.back = o.back.value_or(back_color(thing.front));
         thing.opacity = o.opacity;
         thing.isolines = o.isolines;
         thing.mesh = &mesh;
