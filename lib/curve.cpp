@@ -46,6 +46,12 @@ std::vector<Break> breaks_of(std::span<const Curve> curves) {
     return merged;
 }
 
+std::vector<double> break_parameters(const std::vector<Curve>& curves) {
+    std::vector<double> list;
+    for (const Break& b : breaks_of(curves)) list.push_back(b.t);
+    return list;
+}
+
 Curve reparametrized(const Curve& c, double begin, double end) {
     if (c.begin() == begin && c.end() == end) return c;
     if (const auto* b = c.bezier()) {

@@ -97,6 +97,7 @@ template <class F> Curve make_curve(F f) { return Curve(std::make_shared<CurveMo
 inline constexpr double break_rounding = 1e-13;
 /// The breaks of curves over the same domain, in order, each with the least continuity that any of them has there.
 std::vector<Break> breaks_of(std::span<const Curve> curves);
+std::vector<double> break_parameters(const std::vector<Curve>& curves);
 
 /// The same curve run over [begin, end] (affinely).
 Curve reparametrized(const Curve& c, double begin, double end);

@@ -1,6 +1,9 @@
-// build_coons.cpp -- surfaces that a scene file gives by curves: Coons patches, networks, side-vertex triangles.
+// build_coons.cpp -- surfaces that a scene file gives by curves to interpolate: boolean sums, and side-vertex triangles.
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
+#include "patches/generalized_coons.h"
+#include "patches/gordon.h"
+#include "patches/lagrange.h"
 #include "patches/network.h"
 #include "patches/side_vertex.h"
 #include "registry.h"
@@ -41,12 +44,19 @@ std::array<Curve, 4> four_curves(const Json& j, const char* key, const char* mea
     return {c[0], c[1], c[2], c[3]};
 }
 
+std::vector<double> nodes(const Json& j, const char* key, const SceneValues& values) {
+    return values.numbers(j.at(key, "the parameters of the curves"), 2, most_nodes, "parameters");
+}
+
 }  // namespace
 
-BuiltSurface build_coons(const Json& j, SceneBuilder& scene) {
+CoonsCurves frame_of(const Json& j, SceneBuilder& scene) {
     const auto curve = [&](const char* key, const char* meaning) { return scene.curve(j.at(key, meaning)).curve; };
-    const CoonsCurves curves{curve("c0", "the curve x(u,0)"), curve("c1", "the curve x(u,1)"), curve("d0", "the curve x(0,v)"), curve("d1", "the curve x(1,v)")};
-    return make_coons(curves, blend_of(j, scene.values()), part_of(j, scene.values()));
+    return {curve("c0", "the curve x(u,0)"), curve("c1", "the curve x(u,1)"), curve("d0", "the curve x(0,v)"), curve("d1", "the curve x(1,v)")};
+}
+
+BuiltSurface build_coons(const Json& j, SceneBuilder& scene) {
+    return make_coons(frame_of(j, scene), blend_of(j, scene.values()), part_of(j, scene.values()));
 }
 
 BuiltSurface build_coons_hermite(const Json& j, SceneBuilder& scene) {
@@ -55,15 +65,64 @@ BuiltSurface build_coons_hermite(const Json& j, SceneBuilder& scene) {
     return make_coons_hermite(data, twist_of(j, scene.values(), Twist::compatible), part_of(j, scene.values()));
 }
 
+BuiltSurface build_gordon(const Json& j, SceneBuilder& scene) {
+    static constexpr GordonBlend blends[] = {GordonBlend::lagrange, GordonBlend::hermite};
+    const SceneValues& values = scene.values();
+    const auto blend = j.find("blend");
+    const GordonNetwork network{scene.curves(j.at("u_curves", "the curves x(u, v_nodes[j])"), 2, most_nodes), nodes(j, "v_nodes", values),
+                                scene.curves(j.at("v_curves", "the curves x(u_nodes[i], v)"), 2, most_nodes), nodes(j, "u_nodes", values)};
+    return make_gordon(network, blend ? blends[values.word(*blend, {"lagrange", "hermite"})] : GordonBlend::lagrange, part_of(j, values));
+}
+
+BuiltSurface build_lagrange(const Json& j, SceneBuilder& scene) {
+    return make_lagrange(scene.curves(j.at("curves", "the curves x(u, nodes[i])"), 2, most_nodes), nodes(j, "nodes", scene.values()));
+}
+
+BuiltSurface build_generalized_coons(const Json& j, SceneBuilder& scene) {
+    const SceneValues& values = scene.values();
+    const auto direction = [&](const char* key, std::vector<Functional>& functionals, std::vector<Function>& blends) {
+        const Json d = j.at(key, "{\"functionals\": [...], \"blends\": [...]}");
+        if (!d.is(Json::Kind::object)) d.expected("{\"functionals\": [...], \"blends\": [...]}");
+        d.allow_keys({"functionals", "blends"});
+        const std::string what = "functionals {\"value\": t} or {\"derivative\": t}";
+        for (const Json& l : values.list(d.at("functionals", what), 1, most_nodes, what)) {
+            if (!l.is(Json::Kind::object) || l.size() != 1) l.expected("{\"value\": t} or {\"derivative\": t}");
+            l.allow_keys({"value", "derivative"});
+            const Json at = l.children().front();
+            functionals.push_back({at.key() == "value" ? Functional::Kind::value : Functional::Kind::derivative, values.number(at, "a parameter")});
+        }
+        for (const Json& h : values.list(d.at("blends", "a formula in t for every functional"), functionals.size(), functionals.size(), "formulas in t"))
+            blends.push_back(formula_of(h, values));
+    };
+    GeneralizedCoons data;
+    direction("u", data.u, data.blend_u);
+    direction("v", data.v, data.blend_v);
+    data.f = scene.curves(j.at("f", "a curve f_i(v) for every functional of u"), data.u.size(), data.u.size());
+    data.g = scene.curves(j.at("g", "a curve g_j(u) for every functional of v"), data.v.size(), data.v.size());
+    return make_generalized_coons(data, part_of(j, values));
+}
+
 BuiltSurface build_network(const Json& j, SceneBuilder& scene) {
     const SceneValues& values = scene.values();
-    if (const auto cross = j.find("cross")) {
-        if (cross->is(Json::Kind::object)) cross->expected("\"finite_difference\": twists and cross derivatives are known but not built yet");
-        values.word(*cross, {"finite_difference"});
-    }
-    whole_only(j, values, {"sum", "P1", "P2", "P1P2"});
     const Network network{scene.curves(j.at("a", "the curves x(i,v), i = 0..m"), 2, 1000), scene.curves(j.at("b", "the curves x(u,j), j = 0..n"), 2, 1000)};
-    return make_network(network, twist_of(j, values, Twist::average));
+    const Twist twist = twist_of(j, values, Twist::average);
+    const Part part = part_of(j, values);
+    const auto cross = j.find("cross");
+    if (!cross || cross->is(Json::Kind::string)) {
+        if (cross) values.word(*cross, {"finite_difference"});
+        return make_network(network, twist, part);
+    }
+    const std::string expected = "\"finite_difference\", {\"twists\": [[d_ij]]} or {\"A\": [...], \"B\": [...]}";
+    if (!cross->is(Json::Kind::object)) cross->expected(expected);
+    if (const auto twists = cross->find("twists")) {
+        cross->allow_keys({"twists"});
+        return make_network(network, from_twists(network, values.grid(*twists, 2, 2, 1000)), twist, part);
+    }
+    cross->allow_keys({"twists", "A", "B"});
+    const std::size_t m = network.a.size(), n = network.b.size();
+    const CrossDerivatives given{scene.curves(cross->at("A", "the curves x_u(i,v), one for every curve a"), m, m),
+                                 scene.curves(cross->at("B", "the curves x_v(u,j), one for every curve b"), n, n)};
+    return make_network(network, given, twist, part);
 }
 
 BuiltSurface build_coons_triangle(const Json& j, SceneBuilder& scene) {

@@ -1,13 +1,11 @@
 // build_surfaces.cpp -- surfaces that a scene file gives by their points.
 #include "patches/bezier_triangle.h"
 #include "patches/tensor_bezier.h"
+#include "patches/tensor_hermite.h"
 #include "piecewise_bezier.h"
 #include "registry.h"
 
 namespace isoparm {
-
-namespace {
-constexpr std::size_t kMost = max_degree + 1;
 
 ControlNet net_of(const Grid<Point>& grid) {
     ControlNet net;
@@ -21,6 +19,9 @@ ControlNet net_of(const Grid<Point>& grid) {
     }
     return net;
 }
+
+namespace {
+constexpr std::size_t kMost = max_degree + 1;
 
 /// Rows of degree+1, degree, ... 1 points, from the edge w = 0 towards C.
 ControlNet net_of(int degree, const std::vector<Point>& points) {
@@ -66,6 +67,13 @@ BuiltSurface build_bspline_patch(const Json& j, SceneBuilder& scene) {
     const auto knots_u = values.knots(knots[0], p, points.size()), knots_v = values.knots(knots[1], q, points.front().size());
     const auto w = weights_of(j, values, points);
     return with_degree({make_bspline_patch(p, q, knots_u, knots_v, points, w), net_of(points)}, by(p, q), !w.empty());
+}
+
+BuiltSurface build_hermite_patch(const Json& j, SceneBuilder& scene) {
+    const auto grid = [&](const Json& g) { return scene.values().grid(g, 2, 2, 1000); };
+    const auto points = grid(points_of(j)), du = grid(j.at("du", "the derivatives x_u at the points")), dv = grid(j.at("dv", "the derivatives x_v at the points"));
+    const auto duv = j.find("duv");
+    return make_tensor_hermite(points, du, dv, duv ? grid(*duv) : Grid<Point>{});
 }
 
 // Four points P00, P10, P01, P11 (P_ij at u = i, v = j; pbrt's order), or a grid [[P00, P01], [P10, P11]].

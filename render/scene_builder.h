@@ -1,11 +1,13 @@
 // scene_builder.h -- curves and surfaces of a scene by name: built once, in any order, cycles refused.
 #pragma once
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "json.h"
+#include "patches/control_net.h"
 #include "scene.h"
 #include "scene_values.h"
 
@@ -15,6 +17,7 @@ struct BuiltCurve {
     BuiltCurve(Curve c, ControlNet n = {}) : curve(std::move(c)), net(std::move(n)) {}  // NOLINT: a curve without a net
     Curve curve;
     ControlNet net;  // empty where the type has no control points
+    std::optional<SplineCurve> spline;  // of a polynomial Bezier curve, B-spline or line
 };
 struct BuiltSurface {
     BuiltSurface(Patch p, ControlNet n = {}) : patches{{"", std::move(p)}}, net(std::move(n)) {}  // NOLINT

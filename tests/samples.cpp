@@ -11,13 +11,21 @@
 #include "curves/isocurve.h"
 #include "curves/line.h"
 #include "curves/modify.h"
+#include "patches/basis.h"
 #include "patches/bezier_triangle.h"
+#include "patches/control_net.h"
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
+#include "patches/generalized_coons.h"
+#include "patches/gordon.h"
+#include "patches/lagrange.h"
 #include "patches/network.h"
+#include "patches/ruled.h"
 #include "patches/side_vertex.h"
 #include "patches/tensor_bezier.h"
+#include "patches/tensor_hermite.h"
 #include "patches/transformed.h"
+#include "patches/translational.h"
 #include "scalar/elementary.h"
 
 namespace isoparm::tests {
@@ -186,8 +194,116 @@ Network spline_network(Random& r, int m, int n) {
     }
     return net;
 }
-PatchSample network_over(const Network& net, Twist twist) {
-    return {make_network(net, twist), {net.b.front(), net.a.back(), net.b.back(), net.a.front()}};
+std::vector<Curve> border(const Network& net) { return {net.b.front(), net.a.back(), net.b.back(), net.a.front()}; }
+PatchSample network_over(const Network& net, Twist twist) { return {make_network(net, twist), border(net)}; }
+CrossDerivatives random_cross(Random& r, const Network& net) {
+    Grid<Point> twists(net.a.size());
+    for (auto& row : twists)
+        for (std::size_t j = 0; j < net.b.size(); ++j) row.push_back(r.vector());
+    return from_twists(net, twists);
+}
+
+/// Curves of a Bezier patch of degree 6 x 5 at nodes of both directions: they meet, and no blend here reproduces the patch.
+GordonNetwork gordon_network(Random& r) {
+    const auto p = random_net(r, 7, 6);
+    GordonNetwork net{{}, {0, 0.3, 0.8, 1}, {}, {0, 0.55, 1}};
+    for (const double v : net.v_nodes) {
+        std::vector<Point> points;
+        for (const auto& row : p) points.push_back(make_bezier(row)(v));
+        net.u_curves.push_back(make_bezier(points));
+    }
+    for (const double u : net.u_nodes) {
+        std::vector<Point> points;
+        for (std::size_t j = 0; j < p[0].size(); ++j) {
+            std::vector<Point> column;
+            for (const auto& row : p) column.push_back(row[j]);
+            points.push_back(make_bezier(column)(u));
+        }
+        net.v_curves.push_back(make_bezier(points));
+    }
+    return net;
+}
+PatchSample gordon_over(const GordonNetwork& net, GordonBlend blend) {
+    return {make_gordon(net, blend), {net.u_curves.front(), net.v_curves.back(), net.u_curves.back(), net.v_curves.front()}};
+}
+/// Nodes beyond 0 and 1, breaks in the curves at and between them.
+PatchSample gordon_of_splines(Random& r, GordonBlend blend) {
+    const Network net = spline_network(r, 2, 3);
+    return gordon_over({net.b, {0, 1, 2, 3}, net.a, {0, 1, 2}}, blend);
+}
+/// 1 minus it
+struct OtherBlend {
+    template <class S> S operator()(const S& t) const { return 0.5 * (1.0 + cos(t * std::numbers::pi)); }
+    Polynomial operator()(const Polynomial&) const { return Polynomial::nothing(); }
+};
+/// Hermite functionals along u, values with a blend that is no polynomial along v.
+PatchSample generalized(Random& r) {
+    const HermiteData d = hermite_data(hermite_net(r));
+    const auto value = Functional::Kind::value, derivative = Functional::Kind::derivative;
+    const GeneralizedCoons data{
+        {{value, 0}, {derivative, 0}, {derivative, 1}, {value, 1}},
+        {{value, 0}, {value, 1}},
+        {Function::polynomial({1, 0, -3, 2}), Function::polynomial({0, 1, -2, 1}), Function::polynomial({0, 0, -1, 1}), Function::polynomial({0, 0, 3, -2})},
+        {make_function(OtherBlend{}), make_function(SineBlend{})},
+        {d.f[0], d.f[1], d.f[2], d.f[3]},
+        {d.g[0], d.g[3]}};
+    return {make_generalized_coons(data), {d.g[0], d.f[3], d.g[3], d.f[0]}};
+}
+/// A C1 hat of width 2; its pieces are chosen by the lower end of an interval, so it is right inside cells only.
+struct Hat {
+    double node;
+    template <class S> S operator()(const S& t) const {
+        const double inside = representative(t);
+        if ((inside >= node + 1 && inside < 2) || inside < node - 1) return S(0.0);  // the end of the domain is not a new piece
+        const auto h = hermite_polynomials(S(inside >= node ? t - node : t - (node - 1)));
+        return inside >= node ? h[0] : h[3];
+    }
+    Polynomial operator()(const Polynomial&) const { return Polynomial::nothing(); }
+};
+/// Piecewise cubic functions of both directions over nodes that are not only at the ends: their kinks must become breaks.
+PatchSample generalized_hats(Random& r) {
+    const Network net = spline_network(r, 2, 2);
+    const auto value = Functional::Kind::value;
+    const std::vector<Functional> nodes{{value, 0}, {value, 1}, {value, 2}};
+    const std::vector<Function> hats{make_function(Hat{0}), make_function(Hat{1}), make_function(Hat{2})};
+    return {make_generalized_coons({nodes, nodes, hats, hats, net.a, net.b}), border(net)};
+}
+PatchSample tensor_hermite(Random& r) {
+    Grid<Point> p(3), du(3), dv(3), duv(3);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 4; ++j) {
+            p[i].push_back(r.point({double(i), double(j), 0}, 0.3));
+            du[i].push_back(r.vector() + Point{1, 0, 0}), dv[i].push_back(r.vector() + Point{0, 1, 0}), duv[i].push_back(r.vector());
+        }
+    std::vector<Point> p0, p1, t0, t1;
+    for (int i = 0; i < 3; ++i) p0.push_back(p[i][0]), p1.push_back(p[i][3]), t0.push_back(du[i][0]), t1.push_back(du[i][3]);
+    return {make_tensor_hermite(p, du, dv, duv), {make_hermite(p0, t0), make_hermite(p[2], dv[2]), make_hermite(p1, t1), make_hermite(p[0], dv[0])}};
+}
+/// Control polygons of a frame, cubic with inner knots along u, quadratic along v.
+PatchSample control_net(Random& r) {
+    const auto p = random_net(r, 6, 4);
+    const std::vector<double> ku{0, 0, 0, 0, 0.3, 1.1, 2, 2, 2, 2}, kv{1, 1, 1, 2.5, 3, 3, 3};
+    SplineCurve c0{3, ku, {}}, c1{3, ku, {}}, d0{2, kv, p.front()}, d1{2, kv, p.back()};
+    for (const auto& row : p) c0.points.push_back(row.front()), c1.points.push_back(row.back());
+    const auto curve = [](const SplineCurve& c) { return make_bspline(c.degree, c.knots, c.points); };
+    return {make_control_net({c0, c1, d0, d1}), {curve(c0), curve(d1), curve(c1), curve(d0)}};
+}
+PatchSample translational(Random& r, Curve (*between)(Random&, const Point&, const Point&)) {
+    const Frame e = random_frame(r, between);
+    return {make_translational(e.c0, e.d0), {e.c0}};
+}
+PatchSample translational_blend(Random& r) {
+    const Frame e = random_frame(r);
+    return {make_translational_blend({e.c0, e.c1, e.d0, e.d1}), {e.c0, e.d1, e.c1, e.d0}};
+}
+PatchSample ruled(Random& r, Curve (*between)(Random&, const Point&, const Point&)) {
+    const Frame e = random_frame(r, between);
+    return {make_ruled(e.c0, e.c1), {e.c0, make_line(e.c0(1), e.c1(1)), e.c1, make_line(e.c0(0), e.c1(0))}};
+}
+PatchSample cone_over(Random& r, const Curve& c) {
+    const Point apex = r.point({1, 1, 2});
+    const double a = c.begin(), b = c.end();
+    return {make_cone(c, apex), {c, make_line(c(b), apex), make_line(apex, apex), make_line(c(a), apex)}};
 }
 
 // ---- surfaces on a triangle -----------------------------------------------------------------------------------------
@@ -327,8 +443,52 @@ const std::vector<PatchType>& patch_types() {
                   {make_isocurve(p, Along::u, 0), make_isocurve(p, Along::u, 1)}},
                  Twist::average);
          }},
+        {"network_twists",
+         [](Random& r) {
+             const Network net = spline_network(r, 2, 2);
+             return PatchSample{make_network(net, random_cross(r, net), Twist::compatible), border(net)};
+         }},
+        {"network_cross_derivatives_gregory",
+         [](Random& r) {
+             const Network net = spline_network(r, 2, 1);
+             const CrossDerivatives A = random_cross(r, net), B = random_cross(r, net);  // of different twists
+             return PatchSample{make_network(net, {A.A, B.B}, Twist::gregory), border(net)};
+         }},
         {"network_zero", [](Random& r) { return network_over(spline_network(r, 1, 2), Twist::zero); }},
         {"network_gregory", [](Random& r) { return network_over(spline_network(r, 2, 3), Twist::gregory); }},
+        {"network_P1P2_gregory",
+         [](Random& r) { return PatchSample{make_network(spline_network(r, 2, 2), Twist::gregory, Part::P1P2), {}}; }},
+        {"hermite_P1", [](Random& r) { return PatchSample{make_coons_hermite(twisted_data(r), Twist::average, Part::P1), {}}; }},
+        {"coons_P2",
+         [](Random& r) {
+             const Frame e = random_frame(r);
+             return PatchSample{make_coons({e.c0, e.c1, e.d0, e.d1}, {}, Part::P2), {e.c0}};
+         }},
+        {"lagrange",
+         [](Random& r) {
+             const auto net = gordon_network(r);
+             return PatchSample{make_lagrange(net.u_curves, {0, 1, 2.5, 3}), {net.u_curves.front()}};
+         }},
+        {"lagrange_of_splines",
+         [](Random& r) {
+             const auto net = spline_network(r, 3, 2);
+             return PatchSample{make_lagrange(net.b, {-1, 0.5, 1}), {net.b.front()}};
+         }},
+        {"gordon", [](Random& r) { return gordon_over(gordon_network(r), GordonBlend::lagrange); }},
+        {"gordon_hats", [](Random& r) { return gordon_over(gordon_network(r), GordonBlend::hermite); }},
+        {"gordon_of_splines", [](Random& r) { return gordon_of_splines(r, GordonBlend::lagrange); }},
+        {"gordon_hats_of_splines", [](Random& r) { return gordon_of_splines(r, GordonBlend::hermite); }},
+        {"generalized_coons", generalized},
+        {"generalized_coons_hats", generalized_hats},
+        {"tensor_hermite", tensor_hermite},
+        {"control_net", control_net},
+        {"translational", [](Random& r) { return translational(r, random_cubic); }},
+        {"translational_of_splines", [](Random& r) { return translational(r, cubic_spline); }},
+        {"translational_blend", translational_blend},
+        {"ruled", [](Random& r) { return ruled(r, random_cubic); }},
+        {"ruled_of_rationals", [](Random& r) { return ruled(r, rational_cubic); }},
+        {"cone", [](Random& r) { return cone_over(r, random_cubic(r, r.point(), r.point({2, 0, 0}))); }},
+        {"cone_of_nurbs", [](Random& r) { return cone_over(r, nurbs(r)); }},
         {"bezier_triangle", [](Random& r) { return bezier_triangle(r, 4, false); }},
         {"bezier_triangle_rational", [](Random& r) { return bezier_triangle(r, 3, true); }},
         {"side_vertex_t", [](Random& r) { return side_vertex<kDelta>(r, kT); }, true, false},

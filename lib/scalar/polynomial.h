@@ -116,4 +116,11 @@ void Polynomial::jets(double centre_u, double centre_v, const Interval& u, const
     }
 }
 
+/// A number known to lie in x, for a formula that runs on S: x itself where S keeps enclosures, its middle elsewhere.
+template <class S> auto constant_for(const Interval& x) {
+    if constexpr (std::is_same_v<S, Polynomial>) return Polynomial(x);
+    else if constexpr (std::is_same_v<std::remove_cvref_t<decltype(base(std::declval<S>()))>, Interval>) return x;
+    else return mid(x);
+}
+
 }  // namespace isoparm
