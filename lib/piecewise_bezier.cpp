@@ -192,8 +192,10 @@ Vec3<Polynomial> PiecewiseBezier::exact(const Polynomial& t) const {
     const Interval range = t.range();
     const auto& piece = pieces_[piece_at(mid(range))];
     const double slack = 1e-9 * (piece.end - piece.begin);
-    if (!piece.weights.empty() || range.lo < piece.begin - slack || range.hi > piece.end + slack) return none;
-    const double m = mid(range);
+    // A lone piece is the same polynomial everywhere: on a triangle w = 1-u-v is one of a square, where it leaves [0,1].
+    const bool inside = range.lo >= piece.begin - slack && range.hi <= piece.end + slack;
+    if (!piece.weights.empty() || !(inside || pieces_.size() == 1)) return none;
+    const double m = std::clamp(mid(range), piece.begin, piece.end);
     std::array<Vec3<Interval>, max_degree + 1> a;
     piece_taylor(piece, Interval(m), piece.degree(), a.data());
     const Polynomial step = t - Polynomial(m);
