@@ -14,8 +14,9 @@ namespace isoparm {
 
 namespace {
 ControlNet polygon(const std::vector<Point>& points) {
-    ControlNet net{points, {}};
+    ControlNet net{points, {}, {}};
     for (int k = 0; k + 1 < static_cast<int>(points.size()); ++k) net.rods.push_back({k, k + 1});
+    for (std::size_t k = 0; k < points.size(); ++k) net.indices.push_back(std::to_string(k));
     return net;
 }
 Json points_of(const Json& j) { return j.at("points", "the points of the curve"); }

@@ -1,4 +1,6 @@
 // build_surfaces.cpp -- surfaces that a scene file gives by their points.
+#include <algorithm>
+
 #include "patches/bezier_triangle.h"
 #include "patches/tensor_bezier.h"
 #include "patches/tensor_hermite.h"
@@ -7,12 +9,24 @@
 
 namespace isoparm {
 
+namespace {
+
+/// "01", or "0,10" where an index of two digits makes that ambiguous.
+std::string indices(std::initializer_list<int> all, int largest) {
+    std::string text;
+    for (const int i : all) text += (largest > 9 && !text.empty() ? "," : "") + std::to_string(i);
+    return text;
+}
+
+}  // namespace
+
 ControlNet net_of(const Grid<Point>& grid) {
     ControlNet net;
     const int rows = static_cast<int>(grid.size()), columns = static_cast<int>(grid.front().size());
     for (int i = 0; i < rows; ++i) {
         for (int j = 0; j < columns; ++j) {
             net.points.push_back(grid[i][j]);
+            net.indices.push_back(indices({i, j}, std::max(rows, columns) - 1));
             if (j > 0) net.rods.push_back({i * columns + j - 1, i * columns + j});
             if (i > 0) net.rods.push_back({(i - 1) * columns + j, i * columns + j});
         }
@@ -25,7 +39,9 @@ constexpr std::size_t kMost = max_degree + 1;
 
 /// Rows of degree+1, degree, ... 1 points, from the edge w = 0 towards C.
 ControlNet net_of(int degree, const std::vector<Point>& points) {
-    ControlNet net{points, {}};
+    ControlNet net{points, {}, {}};
+    for (int k = 0; k <= degree; ++k)
+        for (int j = 0; j <= degree - k; ++j) net.indices.push_back(indices({degree - k - j, j, k}, degree));
     int start = 0;
     for (int row = 0; row < degree; ++row) {
         const int length = degree + 1 - row, above = start + length;

@@ -10,6 +10,8 @@
 #include "camera.h"
 #include "drawn.h"
 #include "error.h"
+#include "overlay.h"
+#include "paint.h"
 #include "sampler.h"
 #include "shade.h"
 #include "surfel.h"
@@ -180,7 +182,9 @@ Picture render(const Scene& scene, const RenderOptions& options) {
     const int samples =
         checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples);
     const Area area = checked_area(options, width, height);
-    const Camera camera = make_camera(scene.camera, drawn_points(scene), width, height);
+    const auto objects = drawn_objects(scene);
+    const Camera camera = make_camera(scene.camera, drawn_points(scene, objects), width, height, room_for_text(objects, width, height));
+    const double pixel = static_cast<double>(height) / scene.image.height;
     double reached = 0;  // progress never runs backwards, whatever its parts report
     const auto part_of_progress = [&](double from, double share) -> std::function<void(double)> {
         if (!options.progress) return {};
@@ -192,7 +196,8 @@ Picture render(const Scene& scene, const RenderOptions& options) {
     Picture picture;
     picture.tolerance = in_scene_units(options.tolerance.value_or(scene.tolerance), camera, bounding_box(scene));
     auto start = std::chrono::steady_clock::now();
-    const TracedScene traced = build_traced_scene(scene, picture.tolerance, part_of_progress(0, kMeshShare));
+    TracedScene traced = build_traced_scene(scene, objects, picture.tolerance, part_of_progress(0, kMeshShare));
+    for (Thing& thing : traced.things) thing.isolines.width *= pixel;
     picture.certified_error = traced.certified_error;
     picture.triangles = traced.triangles;
     picture.seconds_mesh = seconds_since(start);
@@ -203,6 +208,7 @@ Picture render(const Scene& scene, const RenderOptions& options) {
     picture.image.pixels.resize(4 * static_cast<std::size_t>(area.width()) * area.height());
     trace(Tracer(traced, camera, samples), area, scene.image.background, part_of_progress(kMeshShare, 1 - kMeshShare),
           picture.image);
+    paint(overlay(scene, objects, traced, camera, pixel), area.x0, area.y0, picture.image);
     picture.seconds_trace = seconds_since(start);
     return picture;
 }

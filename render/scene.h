@@ -8,6 +8,7 @@
 
 #include "composite.h"
 #include "curve.h"
+#include "math_text.h"
 
 namespace isoparm {
 
@@ -32,20 +33,56 @@ struct Isolines {
 struct ControlNet {
     std::vector<Point> points;
     std::vector<std::array<int, 2>> rods;
+    std::vector<std::string> indices;  // of each point, as its label has them: "01", "10,2"
+};
+
+/// What becomes of the part of a line or label that lies behind surfaces: shown fainter, left out, shown all the same,
+/// or dashed (a label: fainter).
+enum class Hidden { ghost, hide, show, dash };
+
+struct Label {
+    MathText text;  // empty: none
+    std::optional<double> at;      // parameter of the curve
+    std::optional<Vec2> at_uv;     // of the surface
+    std::optional<double> size;    // of the letters, pixels of the scene's picture; default a fraction of its height
+    std::optional<Color> color;
+    Hidden hidden = Hidden::ghost;
+    std::optional<int> side;       // 0 right, 1 above right, 2 above ... 7 below right, 8 on the spot
+};
+
+/// A curve drawn flat. Widths are in pixels of the scene's picture.
+struct LineStyle {
+    double width = 0;  // 0: a tube instead
+    std::vector<double> dash;
+    Hidden hidden = Hidden::hide;
+};
+
+/// Coordinate axes through `origin`, each over its range; ticks in ascending order.
+struct Axes {
+    struct Axis {
+        double low = 0, high = 1;
+        std::optional<std::vector<double>> ticks;  // default: round numbers
+        MathText name;
+    };
+    std::array<std::optional<Axis>, 3> axis;
+    Point origin{0, 0, 0};
 };
 
 struct SceneObject {
-    enum class Kind { surface, curve, net, point } kind = Kind::surface;
+    enum class Kind { surface, curve, net, point, axes } kind = Kind::surface;
     std::string name;              // of the surface or curve
-    std::string label;
+    Label label;
     std::optional<Color> color;    // default by kind
     std::optional<Color> back;     // Kind::surface: of its other side; default a grey that goes with `color`
     double opacity = 1;
     std::optional<double> radius;  // of tubes, rods and balls, scene units; default a fraction of the scene's size
     Isolines isolines;
     bool boundary = false;         // draw the patches' boundary curves as tubes
+    LineStyle line;                // Kind::curve, Kind::axes
     Point point;                   // Kind::point
     ControlNet net;                // Kind::net
+    std::vector<Label> net_labels; // Kind::net: one a point, or none
+    Axes axes;                     // Kind::axes
 };
 
 struct CameraSettings {
@@ -80,6 +117,9 @@ struct Scene {
     const Surface* find_surface(const std::string& name) const;
     const Curve* find_curve(const std::string& name) const;
 };
+
+/// Where the axes begin and end, two points each.
+std::vector<Point> ends_of(const Axes& axes);
 
 /// Box around everything that is drawn (all surfaces and curves when nothing is).
 Bounds bounding_box(const Scene& scene);

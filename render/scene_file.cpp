@@ -5,6 +5,7 @@
 #include "json.h"
 #include "scene.h"
 #include "scene_builder.h"
+#include "scene_objects.h"
 #include "scene_values.h"
 #include "suggest.h"
 
@@ -13,10 +14,6 @@ namespace isoparm {
 namespace {
 
 using Kind = Json::Kind;
-
-void must_be_object(const Json& j, const std::string& what) {
-    if (!j.is(Kind::object)) j.expected(what);
-}
 
 // ---- parameters -----------------------------------------------------------------------------------------------------
 
@@ -70,70 +67,6 @@ void read_parameters(const Json& root, const std::map<std::string, double>& over
 }
 
 // ---- objects --------------------------------------------------------------------------------------------------------
-
-Isolines read_isolines(const Json& j, const SceneValues& values) {
-    must_be_object(j, "isolines {\"u\": count, \"v\": count}");
-    j.allow_keys({"u", "v", "width", "color", "opacity"});
-    Isolines lines;
-    if (const auto u = j.find("u")) lines.u = values.integer(*u, 0, 1000, "a number of lines");
-    if (const auto v = j.find("v")) lines.v = values.integer(*v, 0, 1000, "a number of lines");
-    if (const auto width = j.find("width")) lines.width = values.positive(*width, "a positive width in pixels");
-    if (const auto color = j.find("color")) lines.color = values.color(*color);
-    if (const auto opacity = j.find("opacity")) lines.opacity = values.in_range(*opacity, 0, 1, "an opacity from 0 to 1");
-    return lines;
-}
-
-ControlNet net_named(const Json& name, SceneBuilder& builder) {
-    const std::string& wanted = builder.values().text(name, "the name of a surface or curve with control points");
-    std::vector<std::string> names = builder.surface_names();
-    const bool surface = std::find(names.begin(), names.end(), wanted) != names.end();
-    const auto curves = builder.curve_names();
-    names.insert(names.end(), curves.begin(), curves.end());
-    if (std::find(names.begin(), names.end(), wanted) == names.end()) {
-        name.expected("the name of a surface or curve (have: " + listed(names) + ")" + did_you_mean(wanted, names));
-    }
-    ControlNet net = surface ? builder.surface(name).net : builder.curve(name).net;
-    if (net.points.empty()) name.expected("a surface or curve with control points (bezier, bspline, bezier_triangle, line ...)");
-    return net;
-}
-
-SceneObject read_object(const Json& j, SceneBuilder& builder) {
-    const SceneValues& values = builder.values();
-    const std::string kinds = "an object with one of the keys surface, curve, net or point";
-    must_be_object(j, kinds);
-    const auto surface = j.find("surface"), curve = j.find("curve"), net = j.find("net"), point = j.find("point");
-    if (!!surface + !!curve + !!net + !!point != 1) j.fail("found " + std::to_string(!!surface + !!curve + !!net + !!point) + " of the keys surface, curve, net and point, expected one of them");
-
-    SceneObject o;
-    if (surface) {
-        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "radius", "label"});
-        o.kind = SceneObject::Kind::surface;
-        o.name = values.text(*surface, "the name of a surface");
-        builder.surface(*surface);
-        if (const auto back = j.find("back")) o.back = values.color(*back);
-        if (const auto lines = j.find("isolines")) o.isolines = read_isolines(*lines, values);
-        if (const auto boundary = j.find("boundary")) o.boundary = values.boolean(*boundary);
-    } else if (curve) {
-        j.allow_keys({"curve", "color", "opacity", "radius", "label"});
-        o.kind = SceneObject::Kind::curve;
-        o.name = values.text(*curve, "the name of a curve");
-        builder.curve(*curve);
-    } else if (net) {
-        j.allow_keys({"net", "color", "opacity", "radius", "label"});
-        o.kind = SceneObject::Kind::net;
-        o.net = net_named(*net, builder);
-        o.name = net->string();
-    } else {
-        j.allow_keys({"point", "color", "opacity", "radius", "label"});
-        o.kind = SceneObject::Kind::point;
-        o.point = values.point(*point);
-    }
-    if (const auto label = j.find("label")) o.label = values.text(*label, "a text");
-    if (const auto color = j.find("color")) o.color = values.color(*color);
-    if (const auto opacity = j.find("opacity")) o.opacity = values.in_range(*opacity, 0, 1, "an opacity from 0 to 1");
-    if (const auto radius = j.find("radius")) o.radius = values.positive(*radius, "a positive radius in scene units");
-    return o;
-}
 
 /// What a scene without objects shows: the surfaces that no other is made of; if there are none, its curves.
 std::vector<SceneObject> default_objects(const Scene& scene, const std::set<std::string>& used) {

@@ -39,8 +39,8 @@ bool inside_out(const Mesh& mesh) {
 
 class Builder {
 public:
-    Builder(const Scene& scene, double tolerance, const std::function<void(double)>& progress)
-        : scene_(scene), tolerance_(tolerance), progress_(progress) {
+    Builder(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress)
+        : scene_(scene), objects_(objects), tolerance_(tolerance), progress_(progress) {
         const Bounds box = bounding_box(scene);
         size_ = box.diagonal() > 0 ? box.diagonal() : 1;
         result_.embree = std::make_unique<EmbreeScene>(0.5 * (box.low + box.high));
@@ -51,10 +51,9 @@ public:
     }
 
     TracedScene run() {
-        const auto objects = drawn_objects(scene_);
-        for (done_ = 0; done_ < objects.size(); ++done_) {
-            report(0, objects.size());
-            add(objects[done_], objects.size());
+        for (done_ = 0; done_ < objects_.size(); ++done_) {
+            report(0, objects_.size());
+            add(objects_[done_], objects_.size());
         }
         result_.embree->commit();
         // The traced mesh is the certified one moved by the rounding of its vertices.
@@ -71,12 +70,15 @@ private:
             case SceneObject::Kind::surface:
                 return add_surface(o, objects);
             case SceneObject::Kind::curve:
+                if (o.line.width > 0) return;  // drawn over the picture
                 add_curves(o, {drawn(curve_of(scene_, o))}, o.color.value_or(curve_color()), o.opacity);
                 return;
             case SceneObject::Kind::net:
                 return add_net(o);
             case SceneObject::Kind::point:
-                add_balls({o.point}, radius_of(o, size_), o.color.value_or(point_color()), o.opacity);
+                return add_balls({o.point}, radius_of(o, size_), o.color.value_or(point_color()), o.opacity);
+            case SceneObject::Kind::axes:
+                return;  // drawn over the picture
         }
     }
 
@@ -197,6 +199,7 @@ private:
     }
 
     const Scene& scene_;
+    const std::vector<SceneObject>& objects_;
     double tolerance_, mesh_tolerance_ = 0, size_ = 1;
     const std::function<void(double)>& progress_;
     TracedScene result_;
@@ -207,7 +210,10 @@ private:
 }  // namespace
 
 TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress) {
-    return Builder(scene, tolerance, progress).run();
+    return build_traced_scene(scene, drawn_objects(scene), tolerance, progress);
+}
+TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress) {
+    return Builder(scene, objects, tolerance, progress).run();
 }
 
 }  // namespace isoparm

@@ -140,7 +140,7 @@ TEST(Scene, ObjectsCameraImageAndToleranceAreRead) {
     EXPECT_EQ(s.objects[2].net.points.size(), 4u);
     EXPECT_EQ(s.objects[2].net.rods.size(), 4u);
     EXPECT_EQ(s.objects[3].net.rods.size(), 2u);
-    EXPECT_EQ(s.objects[4].label, "P");
+    EXPECT_EQ(s.objects[4].label.text.at(0).text, "P");
     EXPECT_EQ(*s.camera.orthographic, 2);
     EXPECT_FALSE(s.image.background.has_value());
     EXPECT_EQ(s.tolerance.unit, Tolerance::Unit::pixels);
