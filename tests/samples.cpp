@@ -254,7 +254,8 @@ struct Hat {
     double node;
     template <class S> S operator()(const S& t) const {
         const double inside = representative(t);
-        if ((inside >= node + 1 && inside < 2) || inside < node - 1) return S(0.0);  // the end of the domain is not a new piece
+        const bool beyond = inside > node + 1 || (inside == node + 1 && inside < 2);  // at 2 the domain ends: no new piece begins
+        if (beyond || inside < node - 1) return S(0.0);
         const auto h = hermite_polynomials(S(inside >= node ? t - node : t - (node - 1)));
         return inside >= node ? h[0] : h[3];
     }
