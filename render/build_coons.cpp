@@ -1,11 +1,10 @@
-// build_coons.cpp -- surfaces that a scene file gives by curves to interpolate: boolean sums, and side-vertex triangles.
+// build_coons.cpp -- surfaces that a scene file gives by curves to interpolate: boolean sums.
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
 #include "patches/generalized_coons.h"
 #include "patches/gordon.h"
 #include "patches/lagrange.h"
 #include "patches/network.h"
-#include "patches/side_vertex.h"
 #include "registry.h"
 
 namespace isoparm {
@@ -123,22 +122,6 @@ BuiltSurface build_network(const Json& j, SceneBuilder& scene) {
     const CrossDerivatives given{scene.curves(cross->at("A", "the curves x_u(i,v), one for every curve a"), m, m),
                                  scene.curves(cross->at("B", "the curves x_v(u,j), one for every curve b"), n, n)};
     return make_network(network, given, twist, part);
-}
-
-BuiltSurface build_coons_triangle(const Json& j, SceneBuilder& scene) {
-    static const std::vector<std::string> methods{"side_vertex", "three_curves", "bbg_convex", "bbg_boolean", "bbg_symmetric", "bbg_c1", "nielson_c1", "nielson_g1"};
-    static constexpr SideVertexForm forms[] = {SideVertexForm::delta, SideVertexForm::seed};
-    const SceneValues& values = scene.values();
-    const Json method = j.at("method", "one of the methods " + std::string("side_vertex, three_curves, bbg_convex, bbg_boolean, bbg_symmetric, bbg_c1, nielson_c1, nielson_g1"));
-    if (const std::size_t k = values.word(method, methods); k != 0) method.expected("\"side_vertex\": " + methods[k] + " is known but not built yet");
-    for (const char* key : {"cross", "normals"})
-        if (const auto other = j.find(key)) other->fail_at_key(std::string("found \"") + key + "\", expected no such key for the method side_vertex");
-    whole_only(j, values, {"sum", "s1", "s2", "s3", "s4"});
-
-    const auto e = scene.curves(j.at("edges", "the edges [E1: B to C, E2: C to A, E3: A to B]"), 3, 3);
-    const auto H = j.find("H"), form = j.find("form");
-    return make_side_vertex({e[0], e[1], e[2]}, H ? formula_of(*H, values) : Function::polynomial({0, 0, 1}),
-                            form ? forms[values.word(*form, {"delta", "seed"})] : SideVertexForm::delta);
 }
 
 }  // namespace isoparm

@@ -48,6 +48,8 @@ BuiltSurface build_generalized_coons(const Json&, SceneBuilder&);
 BuiltSurface build_coons(const Json&, SceneBuilder&);
 BuiltSurface build_coons_hermite(const Json&, SceneBuilder&);
 BuiltSurface build_network(const Json&, SceneBuilder&);
+
+// build_triangles.cpp: of three edges
 BuiltSurface build_coons_triangle(const Json&, SceneBuilder&);
 
 /// The keys c0, c1, d0, d1.

@@ -8,12 +8,15 @@
 #include "curves/arc.h"
 #include "curves/bezier.h"
 #include "curves/isocurve.h"
+#include "patches/bbg.h"
 #include "patches/bezier_triangle.h"
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
 #include "patches/network.h"
+#include "patches/nielson.h"
 #include "patches/side_vertex.h"
 #include "patches/tensor_bezier.h"
+#include "patches/three_curves.h"
 
 namespace isoparm {
 namespace {
@@ -92,6 +95,26 @@ Function blend(const std::string& name) {
     if (name == "smoothstep") return cubic_blend();
     throw std::runtime_error("no blend " + name);
 }
+std::array<Curve, 3> cross_derivatives(const Json::Value& d) { return {bezier(d["D1"]), bezier(d["D2"]), bezier(d["D3"])}; }
+/// E_k' x D_k, by the product of Bezier polynomials of degree 2.
+std::array<Curve, 3> normals(const Json::Value& d) {
+    const auto normal = [&](const char* edge, const char* across) {
+        const auto p = points(d[edge]), b = points(d[across]);
+        std::vector<Point> n(5);
+        for (int i = 0; i <= 2; ++i)
+            for (int j = 0; j <= 2; ++j) n[i + j] += (binomial(2, i) * binomial(2, j) / binomial(4, i + j)) * cross(3.0 * (p[i + 1] - p[i]), b[j]);
+        return make_bezier(n);
+    };
+    return {normal("E1", "D1"), normal("E2", "D2"), normal("E3", "D3")};
+}
+BbgForm bbg_form(const std::string& name) {
+    using Kind = BbgForm::Kind;
+    if (name == "convex") return {Kind::convex};
+    if (name == "symmetric") return {Kind::symmetric};
+    if (name == "bool_P1P2") return {Kind::boolean, 1, 2};
+    if (name == "bool_P2P1") return {Kind::boolean, 2, 1};
+    return {Kind::projector, name.back() - '0'};
+}
 /// The network of (6.24): parameter lines of a Bezier patch over [0,3] x [0,2], as isocurves or as Bezier curves.
 Network network(const Json::Value& d, bool isocurves) {
     const auto p = grid(d["P"]);
@@ -136,6 +159,12 @@ Patch build(const std::string& name, const Json::Value& d) {
         const auto form = name.find("_delta_") != std::string::npos ? SideVertexForm::delta : SideVertexForm::seed;
         return make_side_vertex(triangle_edges(d), blend(d["H"].asString()), form);
     }
+    const int part = std::isdigit(name.back()) ? name.back() - '0' : 0;
+    if (name.rfind("tri_translational_628", 0) == 0) return make_three_curves(triangle_edges(d));
+    if (name.rfind("bbg_c0_", 0) == 0) return make_bbg(triangle_edges(d), bbg_form(name.substr(7)));
+    if (name.rfind("bbg_c1_", 0) == 0) return make_bbg_c1(triangle_edges(d), cross_derivatives(d), part);
+    if (name == "nielson_g1_normals") return make_nielson_g1(triangle_edges(d), normals(d));
+    if (name.rfind("nielson_c1_", 0) == 0) return make_nielson_c1(triangle_edges(d), cross_derivatives(d), name == "nielson_c1_side_vertex" ? 0 : part);
     throw std::runtime_error("no builder for " + name);
 }
 

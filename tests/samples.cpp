@@ -12,6 +12,7 @@
 #include "curves/line.h"
 #include "curves/modify.h"
 #include "patches/basis.h"
+#include "patches/bbg.h"
 #include "patches/bezier_triangle.h"
 #include "patches/control_net.h"
 #include "patches/coons.h"
@@ -20,10 +21,12 @@
 #include "patches/gordon.h"
 #include "patches/lagrange.h"
 #include "patches/network.h"
+#include "patches/nielson.h"
 #include "patches/ruled.h"
 #include "patches/side_vertex.h"
 #include "patches/tensor_bezier.h"
 #include "patches/tensor_hermite.h"
+#include "patches/three_curves.h"
 #include "patches/transformed.h"
 #include "patches/translational.h"
 #include "scalar/elementary.h"
@@ -339,6 +342,45 @@ template <SideVertexForm form> PatchSample side_vertex(Random& r, std::vector<do
 }
 constexpr auto kDelta = SideVertexForm::delta, kSeed = SideVertexForm::seed;
 
+PatchSample side_vertex_part(Random& r, SideVertexForm form, SideVertexPart part, std::vector<int> free) {
+    const auto e = random_triangle(r);
+    return {make_side_vertex(e, Function::polynomial({0, 0, 1}), form, part), {e[0], e[1], e[2]}, std::move(free)};
+}
+PatchSample bbg_over(const std::array<Curve, 3>& e, const BbgForm& form) {
+    std::vector<int> free;
+    if (form.kind == BbgForm::Kind::projector) free = {form.i - 1};
+    return {make_bbg(e, form), {e[0], e[1], e[2]}, free};
+}
+template <BbgForm::Kind kind, int i = 1, int j = 2> PatchSample bbg(Random& r) { return bbg_over(random_triangle(r), {kind, i, j}); }
+PatchSample bbg_c1(const std::array<Curve, 3>& e, const std::array<Curve, 3>& d, int projector = 0) {
+    return {make_bbg_c1(e, d, projector), {e[0], e[1], e[2]}, projector == 0 ? std::vector<int>{} : std::vector<int>{projector - 1}};
+}
+PatchSample nielson_c1(const std::array<Curve, 3>& e, const std::array<Curve, 3>& d, int ray = 0) {
+    return {make_nielson_c1(e, d, ray), {e[0], e[1], e[2]}, ray == 0 ? std::vector<int>{} : std::vector<int>{ray % 3, (ray + 1) % 3}};
+}
+PatchSample with_cross(Random& r, PatchSample (*make)(const std::array<Curve, 3>&, const std::array<Curve, 3>&, int), int part = 0,
+                       Curve (*between)(Random&, const Point&, const Point&) = random_cubic) {
+    const auto e = random_triangle(r, between);
+    return make(e, random_cross(r, e), part);
+}
+PatchSample nielson_g1(Random& r) {
+    const auto e = random_triangle(r);
+    return {make_nielson_g1(e, normals_of(e, random_cross(r, e))), {e[0], e[1], e[2]}};
+}
+/// Edges that are no splines: sines, so that all runs on jets.
+struct Wave {
+    Point from, to, bend;
+    double begin = 0, end = 1;
+    template <class S> Vec3<S> operator()(const S& t) const {
+        const S wave = sin(t * 3.0);
+        const auto bump = t * (1.0 - t) * wave;
+        const auto at = [&](int axis) -> S { return from[axis] + t * (to[axis] - from[axis]) + bump * bend[axis]; };
+        return {at(0), at(1), at(2)};
+    }
+    Vec3<Polynomial> operator()(const Polynomial&) const { return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()}; }
+};
+Curve wave(Random& r, const Point& from, const Point& to) { return make_curve(Wave{from, to, r.vector(2)}); }
+
 const std::vector<double> kT{0, 1}, kT2{0, 0, 1}, kT3{0, 0, 0, 1}, kQuartic{0, 0, 0, 2, -1}, kSmooth{0, 0, 3, -2};
 
 }  // namespace
@@ -504,6 +546,31 @@ const std::vector<PatchType>& patch_types() {
         {"side_vertex_seed_quartic", [](Random& r) { return side_vertex<kSeed>(r, kQuartic); }},
         {"side_vertex_seed_smooth", [](Random& r) { return side_vertex<kSeed>(r, kSmooth); }, false},
         {"side_vertex_seed_t3", [](Random& r) { return side_vertex<kSeed>(r, kT3); }, false},
+        {"side_vertex_s1", [](Random& r) { return side_vertex_part(r, kDelta, SideVertexPart::s1, {0, 2}); }},
+        {"side_vertex_s2", [](Random& r) { return side_vertex_part(r, kDelta, SideVertexPart::s2, {0, 1}); }},
+        {"side_vertex_s3", [](Random& r) { return side_vertex_part(r, kDelta, SideVertexPart::s3, {1, 2}); }},
+        {"side_vertex_s4", [](Random& r) { return side_vertex_part(r, kDelta, SideVertexPart::s4, {0, 1, 2}); }},
+        {"three_curves", [](Random& r) { auto e = random_triangle(r); return PatchSample{make_three_curves(e), {e[0], e[1], e[2]}}; }},
+        {"three_curves_rational", [](Random& r) { auto e = random_triangle(r, rational_cubic); return PatchSample{make_three_curves(e), {e[0], e[1], e[2]}}; }},
+        {"bbg_P1", bbg<BbgForm::Kind::projector, 1>},
+        {"bbg_P2", bbg<BbgForm::Kind::projector, 2>},
+        {"bbg_P3", bbg<BbgForm::Kind::projector, 3>},
+        {"bbg_convex", bbg<BbgForm::Kind::convex>},
+        {"bbg_convex_rational", [](Random& r) { return bbg_over(random_triangle(r, rational_cubic), {BbgForm::Kind::convex}); }},
+        {"bbg_boolean", bbg<BbgForm::Kind::boolean>},
+        {"bbg_boolean_31", bbg<BbgForm::Kind::boolean, 3, 1>},
+        {"bbg_boolean_32_splines", [](Random& r) { return bbg_over(random_triangle(r, cubic_spline), {BbgForm::Kind::boolean, 3, 2}); }},
+        {"bbg_symmetric", bbg<BbgForm::Kind::symmetric>},
+        {"bbg_symmetric_waves", [](Random& r) { return bbg_over(random_triangle(r, wave), {BbgForm::Kind::symmetric}); }},
+        {"bbg_c1", [](Random& r) { return with_cross(r, bbg_c1); }},
+        {"bbg_c1_P1", [](Random& r) { return with_cross(r, bbg_c1, 1); }},
+        {"bbg_c1_P3", [](Random& r) { return with_cross(r, bbg_c1, 3); }},
+        {"bbg_c1_rational", [](Random& r) { return with_cross(r, bbg_c1, 0, rational_cubic); }},
+        {"nielson_c1", [](Random& r) { return with_cross(r, nielson_c1); }},
+        {"nielson_c1_T1", [](Random& r) { return with_cross(r, nielson_c1, 1); }},
+        {"nielson_c1_T2", [](Random& r) { return with_cross(r, nielson_c1, 2); }},
+        {"nielson_c1_rational", [](Random& r) { return with_cross(r, nielson_c1, 0, rational_cubic); }},
+        {"nielson_g1", nielson_g1, true, false},
         {"transformed",
          [](Random& r) {
              Random h = r.here();
@@ -565,6 +632,30 @@ std::array<Curve, 3> random_triangle(Random& r, Curve (*between)(Random&, const 
     const Point a = r.point({2, 0, 0}, 0.3), b = r.point({0, 2, 0}, 0.3), c = r.point({0, 0, 0}, 0.3);
     const Curve e1 = between(r, b, c), e2 = between(r, c, a), e3 = between(r, a, b);
     return {e1, e2, e3};
+}
+std::array<Curve, 3> random_cross(Random& r, const std::array<Curve, 3>& e) {
+    std::vector<Curve> d;
+    for (int k = 0; k < 3; ++k) {
+        const Curve &own = e[k], &before = e[(k + 2) % 3], &after = e[(k + 1) % 3];
+        const Point first = -before.derivative(1) - 0.5 * own.derivative(0), last = after.derivative(0) + 0.5 * own.derivative(1);
+        d.push_back(make_bezier({first, 0.5 * (first + last) + r.vector(), last}));
+    }
+    return {d[0], d[1], d[2]};
+}
+std::array<Curve, 3> normals_of(const std::array<Curve, 3>& e, const std::array<Curve, 3>& d) {
+    std::vector<Curve> list;
+    for (int k = 0; k < 3; ++k) {
+        Point x[4], y[4], n[5]{};
+        e[k].taylor(0.0, 3, x);
+        d[k].taylor(0.0, 3, y);
+        for (int i = 0; i <= 2; ++i)
+            for (int j = 0; j <= 2; ++j) n[i + j] += (i + 1.0) * cross(x[i + 1], y[j]);
+        std::vector<Point> b(5);  // powers to Bezier
+        for (int i = 0; i <= 4; ++i)
+            for (int j = 0; j <= i; ++j) b[i] += (binomial(i, j) / binomial(4, j)) * n[j];
+        list.push_back(make_bezier(b));
+    }
+    return {list[0], list[1], list[2]};
 }
 std::vector<std::vector<Point>> random_net(Random& r, int rows, int columns) {
     std::vector<std::vector<Point>> p(rows);

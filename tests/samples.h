@@ -49,6 +49,7 @@ const std::vector<CurveType>& curve_types();
 struct PatchSample {
     Patch patch;
     std::vector<Curve> boundary;  // by edge, along its growing parameter: what the surface promises to interpolate
+    std::vector<int> free = {};   // edges that a part of a surface does not interpolate
 };
 struct PatchType {
     const char* name;
@@ -78,6 +79,10 @@ Frame random_frame(Random& random, Curve (*between)(Random&, const Point&, const
 /// E1: B to C, E2: C to A, E3: A to B.
 std::array<Curve, 3> random_triangle(Random& random,
                                      Curve (*between)(Random&, const Point&, const Point&) = random_cubic);
+/// D_k of such edges that fit the tangents at the vertices; inside they are arbitrary (so are the twists).
+std::array<Curve, 3> random_cross(Random& random, const std::array<Curve, 3>& edges);
+/// E_k' x D_k for cubic edges and quadratic D_k.
+std::array<Curve, 3> normals_of(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross);
 std::vector<std::vector<Point>> random_net(Random& random, int rows, int columns);
 
 }  // namespace isoparm::tests

@@ -63,7 +63,10 @@ TEST(Scene, EverySurfaceTypeIsBuilt) {
     const Scene s = load(R"json({ "isoparm": 1, "curves": {
         "c0": { "type": "line", "points": [[0,0,0], [1,0,0]] }, "c1": { "type": "line", "points": [[0,1,0], [1,1,0]] },
         "d0": { "type": "line", "points": [[0,0,0], [0,1,0]] }, "d1": { "type": "line", "points": [[1,0,0], [1,1,0]] },
-        "X": { "type": "line", "points": [[1,0,0], [1,0,0]] }, "Y": { "type": "line", "points": [[0,1,0], [0,1,0]] } },
+        "X": { "type": "line", "points": [[1,0,0], [1,0,0]] }, "Y": { "type": "line", "points": [[0,1,0], [0,1,0]] },
+        "T1": { "type": "line", "points": [[0,1,0], [0,0,0]] }, "T2": { "type": "line", "points": [[0,0,0], [1,0,0]] }, "T3": { "type": "line", "points": [[1,0,0], [0,1,0]] },
+        "D1": { "type": "line", "points": [[1,-0.5,0], [1,-0.5,0]] }, "D2": { "type": "line", "points": [[-0.5,1,0], [-0.5,1,0]] },
+        "D3": { "type": "line", "points": [[-0.5,-0.5,0], [-0.5,-0.5,0]] }, "Z": { "type": "line", "points": [[0,0,1], [0,0,3]] } },
       "surfaces": {
         "bezier": { "type": "bezier", "points": [[[0,0,0], [0,1,0]], [[1,0,0], [1,1,0]]], "weights": [[1,2], [3,4]] },
         "bspline": { "type": "bspline", "degree": [1,1], "knots": [[0,0,1,2,2], [0,0,1,1]], "points": [[[0,0,0], [0,1,0]], [[1,0,1], [1,1,1]], [[2,0,0], [2,1,0]]] },
@@ -79,6 +82,12 @@ TEST(Scene, EverySurfaceTypeIsBuilt) {
         "bezier_triangle": { "type": "bezier_triangle", "degree": 2, "points": [[2,0,0], [1,1,0], [0,2,0], [1,0,0], [0,1,0], [0,0,2]] },
         "coons_triangle": { "type": "coons_triangle", "method": "side_vertex", "H": "t^2", "form": "seed",
           "edges": [{ "type": "line", "points": [[0,1,0], [0,0,0]] }, { "type": "line", "points": [[0,0,0], [1,0,0]] }, { "type": "line", "points": [[1,0,0], [0,1,0]] }] },
+        "three": { "type": "coons_triangle", "method": "three_curves", "edges": ["T1", "T2", "T3"] },
+        "bbg": { "type": "coons_triangle", "method": "bbg_boolean", "projectors": ["P3", "P1"], "edges": ["T1", "T2", "T3"] },
+        "bbg_part": { "type": "coons_triangle", "method": "bbg_convex", "part": "P3", "edges": ["T1", "T2", "T3"] },
+        "bbg_c1": { "type": "coons_triangle", "method": "bbg_c1", "edges": ["T1", "T2", "T3"], "cross": ["D1", "D2", "D3"] },
+        "nielson_c1": { "type": "coons_triangle", "method": "nielson_c1", "edges": ["T1", "T2", "T3"], "cross": ["D1", "D2", "D3"], "part": "T2" },
+        "nielson_g1": { "type": "coons_triangle", "method": "nielson_g1", "edges": ["T1", "T2", "T3"], "normals": ["Z", "Z", "Z"] },
         "moved": { "type": "transform", "surface": "bilinear", "mirror": { "normal": [0,0,1], "offset": 1 } },
         "all": { "type": "composite", "members": ["coons", "moved", { "type": "triangle", "points": [[5,0,0], [6,0,0], [5,1,0]] }] },
         "twice": { "type": "composite", "members": ["all", { "type": "transform", "surface": "all", "translate": [0,0,9] }] } } })json");
@@ -90,6 +99,7 @@ TEST(Scene, EverySurfaceTypeIsBuilt) {
     expect_near(patch(s, "bezier_triangle").point(1, 0), {2, 0, 0});
     expect_near(patch(s, "bspline").point(1, 0.5), {1, 0.5, 1});
     expect_near(patch(s, "coons_triangle").point(0.2, 0.3), {0.2, 0.3, 0});
+    for (const char* name : {"three", "bbg", "bbg_part", "bbg_c1", "nielson_c1", "nielson_g1"}) expect_near(patch(s, name).point(0.2, 0.3), {0.2, 0.3, 0});
     expect_near(patch(s, "moved").point(0, 0), {0, 0, 2});
     const auto& twice = s.find_surface("twice")->patches;
     ASSERT_EQ(twice.size(), 6u);

@@ -14,6 +14,10 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 double unknown(double) { return kUnknown; }
 Interval unknown(const Interval&) { return Interval::all(); }
 
+constexpr int kMost = 8;  // orders that are asked for here
+/// Taylor coefficients that a curve knows. Derivatives of derivatives of Bezier curves need more than the 3 that every curve has.
+int known_order(const Curve& c) { return c.bezier() ? kMost : 3; }
+
 /// What a curve must answer on packs, by its answers on numbers.
 template <class C> void lane_by_lane(const C& c, const Pack& t, int order, Vec3<Pack>* out) {
     Vec3<double> one[4];
@@ -40,8 +44,8 @@ public:
 
 private:
     template <class T> void run(const T& t, int order, Vec3<T>* out) const {
-        Vec3<T> e[4];
-        const int known = std::min(order + 1, 3);
+        Vec3<T> e[kMost + 1];
+        const int known = std::min(order + 1, known_order(c_));
         c_.taylor(t, known, e);
         for (int k = 0; k <= order; ++k) out[k] = k < known ? T(k + 1.0) * e[k + 1] : Vec3<T>{unknown(t), unknown(t), unknown(t)};
     }
@@ -93,8 +97,8 @@ public:
     void taylor(const Pack& t, int order, Vec3<Pack>* out) const override { lane_by_lane(*this, t, order, out); }
     void taylor(const Interval& t, int order, Vec3<Interval>* out) const override {
         const Interval d = t - Interval(end_);
-        const int known = std::min(order + 1, 3);
-        Vec3<Interval> from_end[4], here[4];
+        const int known = std::min(order + 1, known_order(c_));
+        Vec3<Interval> from_end[kMost + 1], here[kMost + 1];
         c_.taylor(hull(t, Interval(end_)), known, from_end);
         c_.taylor(t, order, here);
         for (int k = 0; k <= order; ++k)

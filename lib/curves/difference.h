@@ -10,11 +10,11 @@ namespace isoparm {
 
 enum class CurveEnd { first, last };
 
-/// E'. The exact Bezier pieces where E is polynomial; otherwise Taylor coefficients of order 3 are unknown: NaN, or Interval::all().
+/// E'. The exact Bezier pieces where E is polynomial. Where E is neither that nor rational, Taylor coefficients of order 3 are unknown: NaN, or
+/// Interval::all().
 Curve derivative_curve(const Curve& c);
 
-/// q above. An exact Bezier curve where E is one polynomial; otherwise coefficients of order 3 have no bound at the end itself, nor
-/// do those of order 2 where E is a derivative_curve().
+/// q above. An exact Bezier curve where E is one polynomial. At the end itself coefficients have bounds up to one order less than E knows.
 Curve divided_difference(const Curve& c, CurveEnd end);
 
 }  // namespace isoparm

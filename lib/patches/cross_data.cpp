@@ -34,7 +34,7 @@ void require_nonzero(const std::string& name, const Curve& c) {
 double unparallel(const Point& a, const Point& b) { return length(cross(normalized(a), normalized(b))); }
 double unnormal(const Point& a, const Point& b) { return length(b) == 0 ? 0 : std::abs(dot(normalized(a), normalized(b))); }
 void require_angle(const std::string& condition, double sine) {
-    if (!(sine <= compatibility_tolerance)) throw IncompatibleError(condition, sine, compatibility_tolerance);
+    if (!(sine <= compatibility_tolerance)) throw IncompatibleError(condition + " (sine of the angle)", sine, compatibility_tolerance);
 }
 
 }  // namespace
