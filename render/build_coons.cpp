@@ -17,12 +17,6 @@ Part part_of(const Json& j, const SceneValues& values) {
     return part ? parts[values.word(*part, {"sum", "P1", "P2", "P1P2"})] : Part::sum;
 }
 
-/// For a surface whose parts cannot be drawn yet.
-void whole_only(const Json& j, const SceneValues& values, const std::vector<std::string>& parts) {
-    const auto part = j.find("part");
-    if (part && values.word(*part, parts) != 0) part->expected("\"sum\": the other parts are known but not built yet here");
-}
-
 Twist twist_of(const Json& j, const SceneValues& values, Twist otherwise) {
     static constexpr Twist twists[] = {Twist::compatible, Twist::gregory, Twist::average, Twist::zero};
     const auto twist = j.find("twist");
