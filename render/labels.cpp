@@ -12,7 +12,7 @@ namespace isoparm {
 namespace {
 
 // What a place costs. Nothing may lie outside or on another label if there is any other place.
-constexpr double kOutside = 1000, kOnLabel = 300, kOnLine = 4, kWrongSide = 2, kFar = 1.2, kNextAnchor = 0.5, kHidden = 6;
+constexpr double kOutside = 1000, kOnLabel = 300, kOnLine = 9, kWrongSide = 2, kFar = 1.0, kNextAnchor = 0.5, kHidden = 6;
 
 struct Box {
     double left, top, right, bottom;
@@ -36,7 +36,7 @@ public:
         double least = INFINITY;
         for (std::size_t k = 0; k < request.anchors.size(); ++k)
             for (int side = 0; side < 9; ++side)
-                for (const double far : {0.0, 1.0}) {
+                for (const double far : {0.0, 1.0, 2.2}) {
                     if (request.side < 0 ? side == 8 : request.side != side) continue;
                     const Anchor& anchor = request.anchors[k];
                     const TextPlace there = candidate(request, anchor, side, far);

@@ -27,7 +27,7 @@ struct LabelRequest {
     Color color;
 };
 
-/// Places one label after the other, each where it costs least among the eight sides of its anchors and two distances.
+/// Places one label after the other, each where it costs least among the eight sides of its anchors and three distances.
 /// The outcome depends on nothing but the arguments. Texts go to the end of the drawing.
 void place_labels(const std::vector<LabelRequest>& requests, const std::vector<Obstacle>& obstacles, int width, int height, Drawing& drawing);
 

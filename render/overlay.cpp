@@ -13,14 +13,15 @@ namespace isoparm {
 namespace {
 
 constexpr int kOnTheSpot = 8;
-constexpr double kLetters = 0.036;  // of the picture's height, or of three quarters of its width
+constexpr double kLetters = 0.036;      // of the picture's height, or of three quarters of its width,
+constexpr double kMostLetters = 0.055;  // and of its panel's
 
 using Kind = SceneObject::Kind;
 
 class Overlay {
 public:
-    Overlay(const Scene& scene, const TracedScene& traced, const Camera& camera, double pixel)
-        : scene_(scene), camera_(camera), sight_(traced, camera), pixel_(pixel), size_(bounding_box(scene).diagonal()), letter_(letter_size(camera.width, camera.height)) {
+    Overlay(const Scene& scene, const TracedScene& traced, const Camera& camera, double pixel, double letter)
+        : scene_(scene), camera_(camera), sight_(traced, camera), pixel_(pixel), size_(bounding_box(scene).diagonal()), letter_(letter) {
         if (!(size_ > 0)) size_ = 1;
     }
 
@@ -153,16 +154,18 @@ private:
 
 }  // namespace
 
-Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced, const Camera& camera, double pixel) {
+Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced, const Camera& camera, double pixel, double letter) {
     const auto vectors = [](const SceneObject& o) { return o.line.width > 0 || !o.label.text.empty() || !o.net_labels.empty() || o.kind == Kind::axes; };
     if (std::none_of(objects.begin(), objects.end(), vectors)) return {};
-    return Overlay(scene, traced, camera, pixel).run(objects);
+    return Overlay(scene, traced, camera, pixel, letter).run(objects);
 }
 
-double letter_size(int width, int height) { return kLetters * std::min(double(height), 0.75 * width); }
+double letter_size(int picture_width, int picture_height, int width, int height) {
+    const auto size = [](int w, int h) { return std::min(double(h), 0.75 * w); };
+    return std::min(kLetters * size(picture_width, picture_height), kMostLetters * size(width, height));
+}
 
-Vec2 room_for_text(const std::vector<SceneObject>& objects, int width, int height) {
-    const double letter = letter_size(width, height);
+Vec2 room_for_text(const std::vector<SceneObject>& objects, double letter) {
     Vec2 room;
     for (const SceneObject& o : objects) {
         if (o.kind == Kind::axes) room = {std::max(room.x, 2.4 * letter), std::max(room.y, 1.6 * letter)};

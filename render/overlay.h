@@ -5,12 +5,12 @@
 
 namespace isoparm {
 
-/// `pixel`: pixels of this picture to one of the scene's. The same for every number of threads.
-Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced, const Camera& camera, double pixel);
+/// `pixel`: pixels of this picture to one of the scene's; `letter`: size of letters that say nothing else. The same for every number of threads.
+Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced, const Camera& camera, double pixel, double letter);
 
-/// The size of letters that a label does not give, in pixels, on a picture of this size.
-double letter_size(int width, int height);
+/// The size of letters, in pixels, on a part width x height of a picture.
+double letter_size(int picture_width, int picture_height, int width, int height);
 /// Pixels to keep free about what a camera fits, for the labels and axes of the objects.
-Vec2 room_for_text(const std::vector<SceneObject>& objects, int width, int height);
+Vec2 room_for_text(const std::vector<SceneObject>& objects, double letter);
 
 }  // namespace isoparm

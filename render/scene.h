@@ -102,13 +102,23 @@ struct Tolerance {
     double value = 1e-4;  // relative: of the bounding-box diagonal
 };
 
+/// A part of the picture, with a title under it, that shows some of the scene's objects.
+struct Panel {
+    std::size_t first = 0, last = 0;       // objects first <= i < last
+    MathText title;                        // may be empty
+    std::optional<CameraSettings> camera;  // default: the scene's, which fits the objects of all panels
+};
+
 struct Scene {
     std::string path, title, source;
     std::string place;  // "path:line:column: at $.objects", or of the whole when nothing is named there
     std::map<std::string, double> parameters;
+    std::map<std::string, std::array<double, 2>> ranges;  // of the parameters; infinite where the file gives none
     std::vector<std::pair<std::string, Curve>> curves;  // in the order of the file
     std::vector<Surface> surfaces;
-    std::vector<SceneObject> objects;
+    std::vector<SceneObject> objects;  // of all panels, one after the other, when there are panels
+    std::vector<Panel> panels;
+    int panel_rows = 1, panel_columns = 1;
     CameraSettings camera;
     ImageSettings image;
     Tolerance tolerance;

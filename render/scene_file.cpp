@@ -1,6 +1,7 @@
 // scene_file.cpp -- a scene from its file: parameters, curves, surfaces, what is drawn, and how.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "json.h"
 #include "scene.h"
@@ -40,7 +41,7 @@ Parameter read_parameter(const Json& j, const SceneValues& values) {
 }
 
 /// Later parameters may use earlier ones.
-void read_parameters(const Json& root, const std::map<std::string, double>& overrides, SceneValues& values) {
+void read_parameters(const Json& root, const std::map<std::string, double>& overrides, SceneValues& values, std::map<std::string, std::array<double, 2>>& ranges) {
     const auto list = root.find("parameters");
     std::vector<std::string> names;
     if (list) {
@@ -57,6 +58,7 @@ void read_parameters(const Json& root, const std::map<std::string, double>& over
                 }
             }
             values.parameters[name] = p.value;
+            ranges[name] = {p.least, p.most};
             names.push_back(name);
         }
     }
@@ -142,6 +144,44 @@ Tolerance read_tolerance(const Json& j, const SceneValues& values) {
     return {Tolerance::Unit::relative, values.positive(*relative, "a positive fraction of the bounding-box diagonal")};
 }
 
+// ---- panels ---------------------------------------------------------------------------------------------------------
+
+/// "2x3": rows by columns, enough for the panels.
+void read_layout(const Json& j, const SceneValues& values, Scene& scene) {
+    const std::string expected = "rows and columns with room for " + std::to_string(scene.panels.size()) + " panels, such as \"1x" + std::to_string(scene.panels.size()) + "\"";
+    const std::string& text = values.text(j, expected);
+    int rows = 0, columns = 0, end = 0;
+    if (std::sscanf(text.c_str(), "%2dx%2d%n", &rows, &columns, &end) != 2 || end != static_cast<int>(text.size()) || rows < 1 || columns < 1 ||
+        static_cast<std::size_t>(rows) * columns < scene.panels.size()) {
+        j.expected(expected);
+    }
+    scene.panel_rows = rows;
+    scene.panel_columns = columns;
+}
+
+void read_panels(const Json& root, SceneBuilder& builder, Scene& scene) {
+    const SceneValues& values = builder.values();
+    const auto panels = root.find("panels"), layout = root.find("layout"), objects = root.find("objects");
+    if (layout && !panels) layout->fail_at_key("found \"layout\" without \"panels\", expected panels to lay out");
+    if (!panels) return;
+    if (objects) panels->fail_at_key("found both \"objects\" and \"panels\", expected the objects in the panels");
+    scene.place = panels->place();
+    for (const Json& j : values.list(*panels, 1, 64, "panels {\"objects\": [...]}")) {
+        must_be_object(j, "a panel {\"objects\": [...], \"title\": ...}");
+        j.allow_keys({"objects", "title", "camera"});
+        Panel panel{scene.objects.size(), 0, {}, {}};
+        for (const Json& o : values.list(j.at("objects", "the objects that the panel draws"), 1, 0, "objects to draw")) scene.objects.push_back(read_object(o, builder));
+        panel.last = scene.objects.size();
+        if (const auto title = j.find("title")) panel.title = read_math_text(*title, values, true);
+        if (const auto camera = j.find("camera")) panel.camera = read_camera(*camera, values);
+        scene.panels.push_back(std::move(panel));
+    }
+    const int count = static_cast<int>(scene.panels.size());
+    scene.panel_columns = count <= 3 ? count : static_cast<int>(std::ceil(std::sqrt(count)));
+    scene.panel_rows = (count + scene.panel_columns - 1) / scene.panel_columns;
+    if (layout) read_layout(*layout, values, scene);
+}
+
 // ---- the whole ------------------------------------------------------------------------------------------------------
 
 void check_version(const Json& root) {
@@ -157,12 +197,11 @@ Surface finished(const std::string& name, const std::string& type, BuiltSurface 
 }
 
 Scene read_scene(const Json& root, const std::map<std::string, double>& overrides) {
-    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "camera", "image", "tessellation"});
+    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "panels", "layout", "camera", "image", "tessellation"});
     check_version(root);
     SceneValues values;
-    read_parameters(root, overrides, values);
-
     Scene scene;
+    read_parameters(root, overrides, values, scene.ranges);
     scene.path = root.file();
     scene.place = root.place();
     scene.parameters = values.parameters;
@@ -186,6 +225,7 @@ Scene read_scene(const Json& root, const std::map<std::string, double>& override
         scene.place = objects->place();
         for (const Json& o : objects->children()) scene.objects.push_back(read_object(o, builder));
     }
+    read_panels(root, builder, scene);
     if (scene.objects.empty()) scene.objects = default_objects(scene, builder.used_surfaces());
     scene.image.background = Color{1, 1, 1};
     if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera, values);

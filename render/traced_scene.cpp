@@ -87,7 +87,8 @@ private:
         const Mesh& mesh = mesh_of(surface, objects);
         Thing thing;
         thing.front = o.color.value_or(surface_color(surfaces_++));
-        thing.back = o.back.value_or(back_color(thing.front));
+        // Both sides of a translucent sheet look alike, so that it keeps its colour where several lie over each other.
+        thing.back = o.back.value_or(o.opacity < 1 ? thing.front : back_color(thing.front));
         thing.opacity = o.opacity;
         thing.isolines = o.isolines;
         thing.mesh = &mesh;

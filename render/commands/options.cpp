@@ -104,7 +104,7 @@ const std::string& Options::scene_path() const {
     if (words_.size() != 1) fail("found " + std::to_string(words_.size()) + " file names, expected one scene");
     return words_.front();
 }
-Scene Options::scene() const {
+Scene Options::scene(const std::map<std::string, double>& more) const {
     const std::string& path = scene_path();
     std::map<std::string, double> parameters;
     for (const std::string& set : values("--set")) {
@@ -112,6 +112,7 @@ Scene Options::scene() const {
         if (equals == std::string::npos || equals == 0) fail("--set: found " + quoted(set) + ", expected PARAMETER=NUMBER");
         parameters[set.substr(0, equals)] = parse_number("--set " + set.substr(0, equals), set.substr(equals + 1));
     }
+    for (const auto& [name, value] : more) parameters[name] = value;
     return load_scene(path, parameters);
 }
 
