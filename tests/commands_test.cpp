@@ -83,7 +83,7 @@ TEST(Commands, EvalAnswersInJson) {
     for (const char* key : {"Su", "Sv", "Suu", "Suv", "Svv", "n"}) EXPECT_EQ(p[key].size(), 3u) << key;
     EXPECT_NEAR(pole["n"][2].asDouble(), 1, 1e-15);
     EXPECT_TRUE(pole["gaussian"].isNull());
-    EXPECT_TRUE(parsed(run("eval " + scene("s004_gregory") + " --at 0,0 --json").out)["points"][0]["Suv"].isNull());
+    EXPECT_TRUE(parsed(run("eval " + scene("s004_gregory") + " --surface square --at 0,0 --json").out)["points"][0]["Suv"].isNull());
     expect("eval " + scene("sphere") + " --surface sphere/south/octant --at 0,0", 0, "S         0 0 -1");
     expect("eval --at -0.5,0 -- " + scene("coons"), 65, "found -0.5,0");
 }
