@@ -10,6 +10,7 @@ std::vector<double> round_ticks(double low, double high, double least);
 
 /// `pixel`: pixels of this picture to one of the scene's; `letter`: size of letters in pixels. Numbers and names become
 /// obstacles to labels.
-void add_axes(const SceneObject& o, const Color& color, const Sight& sight, double pixel, double letter, std::vector<Obstacle>& obstacles, Drawing& drawing);
+void add_axes(const SceneObject& o, const Color& color, const Sight& sight, double pixel, double letter,
+              std::vector<Obstacle>& obstacles, Drawing& drawing);
 
 }  // namespace isoparm

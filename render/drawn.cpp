@@ -75,7 +75,7 @@ std::vector<Point> drawn_points(const Scene& scene, const std::vector<SceneObjec
                 for (const Point& p : o.net.points) add_around(p, kNetBall * radius, points);
                 break;
             case SceneObject::Kind::point:
-                add_around(o.point, radius, points);
+                add_around(o.point, o.line.width > 0 ? 0 : radius, points);
                 break;
             case SceneObject::Kind::axes:
                 for (const Point& p : ends_of(o.axes)) points.push_back(p);

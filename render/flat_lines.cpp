@@ -42,14 +42,19 @@ struct Run {
 std::vector<Run> runs_of(const std::vector<double>& seen) {
     std::vector<Run> runs;
     for (std::size_t i = 0; i < seen.size(); ++i) {
-        if (!runs.empty() && std::fabs(runs.back().seen - seen[i]) < 1e-6) runs.back().last = i;
-        else runs.push_back({i == 0 ? 0 : i - 1, i, seen[i]});
+        if (!runs.empty() && std::fabs(runs.back().seen - seen[i]) < 1e-6)
+            runs.back().last = i;
+        else
+            runs.push_back({i == 0 ? 0 : i - 1, i, seen[i]});
     }
     std::vector<Run> kept;
     for (const Run& r : runs) {
-        if (!kept.empty() && (r.last - r.first <= kShort || std::fabs(kept.back().seen - r.seen) < 1e-6)) kept.back().last = r.last;
-        else if (kept.size() == 1 && kept[0].last - kept[0].first <= kShort) kept[0] = {kept[0].first, r.last, r.seen};
-        else kept.push_back(r);
+        if (!kept.empty() && (r.last - r.first <= kShort || std::fabs(kept.back().seen - r.seen) < 1e-6))
+            kept.back().last = r.last;
+        else if (kept.size() == 1 && kept[0].last - kept[0].first <= kShort)
+            kept[0] = {kept[0].first, r.last, r.seen};
+        else
+            kept.push_back(r);
     }
     return kept;
 }
@@ -58,10 +63,14 @@ std::vector<Run> runs_of(const std::vector<double>& seen) {
 
 double opacity_of(Hidden hidden, double seen) {
     switch (hidden) {
-        case Hidden::hide: return seen;
-        case Hidden::show: return 1;
-        case Hidden::ghost: return 0.4 + 0.6 * seen;
-        case Hidden::dash: return 0.6 + 0.4 * seen;
+        case Hidden::hide:
+            return seen;
+        case Hidden::show:
+            return 1;
+        case Hidden::ghost:
+            return 0.4 + 0.6 * seen;
+        case Hidden::dash:
+            return 0.6 + 0.4 * seen;
     }
     return 1;
 }
@@ -71,7 +80,8 @@ std::vector<Point> fine_points(const std::vector<CubicPiece>& pieces, const Came
     for (const CubicPiece& b : pieces) {
         double length = 0;  // of the polygon on the picture, which is not shorter than the curve
         for (int k = 0; k < 3; ++k)
-            if (camera.depth(b[k]) > 0 && camera.depth(b[k + 1]) > 0) length += apart(camera.project(b[k]), camera.project(b[k + 1]));
+            if (camera.depth(b[k]) > 0 && camera.depth(b[k + 1]) > 0)
+                length += apart(camera.project(b[k]), camera.project(b[k + 1]));
         const int steps = static_cast<int>(std::clamp(std::ceil(length / kStep), 1.0, 20000.0));
         for (int i = points.empty() ? 0 : 1; i <= steps; ++i) {
             const double t = static_cast<double>(i) / steps, s = 1 - t;
@@ -82,7 +92,8 @@ std::vector<Point> fine_points(const std::vector<CubicPiece>& pieces, const Came
     return points;
 }
 
-void add_line(const std::vector<Point>& points, const LineLook& look, const Sight& sight, double clear, Drawing& drawing) {
+void add_line(const std::vector<Point>& points, const LineLook& look, const Sight& sight, double clear,
+              Drawing& drawing) {
     if (points.size() < 2 || !(look.width > 0) || !(look.opacity > 0)) return;
     std::vector<Vec2> at;
     std::vector<double> seen;
@@ -96,7 +107,9 @@ void add_line(const std::vector<Point>& points, const LineLook& look, const Sigh
         if (opacity < 0.02) continue;
         const bool behind = r.seen < 0.999 && look.hidden != Hidden::hide && look.hidden != Hidden::show;
         const double width = behind ? 0.75 * look.width : look.width;
-        Polyline line{thinned({at.begin() + static_cast<std::ptrdiff_t>(r.first), at.begin() + static_cast<std::ptrdiff_t>(r.last) + 1}), width, look.dash, runs.size() == 1};
+        Polyline line{thinned({at.begin() + static_cast<std::ptrdiff_t>(r.first),
+                               at.begin() + static_cast<std::ptrdiff_t>(r.last) + 1}),
+                      width, look.dash, runs.size() == 1};
         if (behind && look.hidden == Hidden::dash && line.dash.empty()) line.dash = {4 * width, 3 * width};
         if (!line.dash.empty()) line.round = false;
         drawing.push_back({std::move(line), look.color, opacity});

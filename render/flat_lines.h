@@ -17,7 +17,8 @@ struct LineLook {
 std::vector<Point> fine_points(const std::vector<CubicPiece>& pieces, const Camera& camera);
 
 /// Points that follow each other within some pixels. `clear` as for Sight.
-void add_line(const std::vector<Point>& points, const LineLook& look, const Sight& sight, double clear, Drawing& drawing);
+void add_line(const std::vector<Point>& points, const LineLook& look, const Sight& sight, double clear,
+              Drawing& drawing);
 
 /// How the part of a line or label is drawn that is seen as much as `seen`: its opacity.
 double opacity_of(Hidden hidden, double seen);

@@ -12,7 +12,8 @@ namespace isoparm {
 namespace {
 
 // What a place costs. Nothing may lie outside or on another label if there is any other place.
-constexpr double kOutside = 1000, kOnLabel = 300, kOnLine = 9, kWrongSide = 2, kFar = 1.0, kNextAnchor = 0.5, kHidden = 6;
+constexpr double kOutside = 1000, kOnLabel = 300, kOnLine = 9, kWrongSide = 2, kFar = 1.0, kNextAnchor = 0.5,
+                 kHidden = 6;
 
 struct Box {
     double left, top, right, bottom;
@@ -29,7 +30,8 @@ double distance_to(const Box& b, const Vec2& p) {
 
 class Placer {
 public:
-    Placer(const std::vector<Obstacle>& obstacles, int width, int height) : obstacles_(obstacles), picture_{0, 0, double(width), double(height)} {}
+    Placer(const std::vector<Obstacle>& obstacles, int width, int height)
+        : obstacles_(obstacles), picture_{0, 0, double(width), double(height)} {}
 
     TextPlace place(const LabelRequest& request, double& seen) {
         TextPlace best{};
@@ -40,7 +42,8 @@ public:
                     if (request.side < 0 ? side == 8 : request.side != side) continue;
                     const Anchor& anchor = request.anchors[k];
                     const TextPlace there = candidate(request, anchor, side, far);
-                    const double cost = cost_of(there, request, anchor, side, far) + kNextAnchor * static_cast<double>(k);
+                    const double cost =
+                        cost_of(there, request, anchor, side, far) + kNextAnchor * static_cast<double>(k);
                     if (cost < least) least = cost, best = there, seen = anchor.seen;
                 }
         taken_.push_back(grown(best, 0.12 * request.size));
@@ -55,11 +58,13 @@ private:
     static TextPlace candidate(const LabelRequest& request, const Anchor& anchor, int side, double far) {
         if (side == 8) return centred_text(request.label->text, request.size, anchor.at);
         const auto [x, y] = direction(side);
-        return text_beside(request.label->text, request.size, anchor.at, x, y, anchor.gap + (0.22 + 0.45 * far) * request.size);
+        return text_beside(request.label->text, request.size, anchor.at, x, y,
+                           anchor.gap + (0.22 + 0.45 * far) * request.size);
     }
     double cost_of(const TextPlace& t, const LabelRequest& request, const Anchor& anchor, int side, double far) const {
         const Box box = grown(t, 0.1 * request.size);
-        double cost = kOutside * (1 - common(box, picture_).area() / box.area()) + kFar * far + kHidden * (1 - anchor.seen);
+        double cost =
+            kOutside * (1 - common(box, picture_).area() / box.area()) + kFar * far + kHidden * (1 - anchor.seen);
         for (const Box& other : taken_)
             if (const double both = common(box, other).area(); both > 0) cost += kOnLabel * (0.2 + both / box.area());
         double covered = 0;
@@ -95,14 +100,19 @@ TextPlace text_beside(const MathText& text, double size, const Vec2& at, double 
     TextPlace t = centred_text(text, size, at);
     // To the side until the box clears a disc of radius `gap`: along x or y its edge, diagonally its corner.
     const double half_width = 0.5 * (t.right - t.left), half_height = 0.5 * (t.bottom - t.top);
-    const auto shift = [&](double d, double half) { return std::fabs(d) < 1e-9 ? 0.0 : d * gap + std::copysign(half * std::min(1.0, std::fabs(d) / std::numbers::sqrt2 * 2), d); };
+    const auto shift = [&](double d, double half) {
+        return std::fabs(d) < 1e-9
+                   ? 0.0
+                   : d * gap + std::copysign(half * std::min(1.0, std::fabs(d) / std::numbers::sqrt2 * 2), d);
+    };
     const double dx = shift(x, half_width), dy = shift(y, half_height);
     t.text.at.x += dx, t.left += dx, t.right += dx;
     t.text.at.y += dy, t.top += dy, t.bottom += dy;
     return t;
 }
 
-void place_labels(const std::vector<LabelRequest>& requests, const std::vector<Obstacle>& obstacles, int width, int height, Drawing& drawing) {
+void place_labels(const std::vector<LabelRequest>& requests, const std::vector<Obstacle>& obstacles, int width,
+                  int height, Drawing& drawing) {
     Placer placer(obstacles, width, height);
     for (const LabelRequest& r : requests) {
         if (r.anchors.empty() || r.label->text.empty()) continue;

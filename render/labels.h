@@ -21,15 +21,16 @@ struct Anchor {
 
 struct LabelRequest {
     const Label* label;
-    int side = -1;  // the only one that is tried; -1: any of the eight
+    int side = -1;                // the only one that is tried; -1: any of the eight
     std::vector<Anchor> anchors;  // the first is preferred
     double size = 0;              // of the letters, pixels
     Color color;
 };
 
-/// Places one label after the other, each where it costs least among the eight sides of its anchors and three distances.
-/// The outcome depends on nothing but the arguments. Texts go to the end of the drawing.
-void place_labels(const std::vector<LabelRequest>& requests, const std::vector<Obstacle>& obstacles, int width, int height, Drawing& drawing);
+/// Places one label after the other, each where it costs least among the eight sides of its anchors and three
+/// distances. The outcome depends on nothing but the arguments. Texts go to the end of the drawing.
+void place_labels(const std::vector<LabelRequest>& requests, const std::vector<Obstacle>& obstacles, int width,
+                  int height, Drawing& drawing);
 
 /// A text whose ink has its middle at `middle`, and the box that it then fills.
 struct TextPlace {

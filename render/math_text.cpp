@@ -20,19 +20,19 @@ struct Symbol {
 };
 const std::map<std::string, Symbol>& symbols() {
     static const std::map<std::string, Symbol> all{
-        {"alpha", {"α", true}},    {"beta", {"β", true}},      {"gamma", {"γ", true}},    {"delta", {"δ", true}},
-        {"epsilon", {"ε", true}},  {"zeta", {"ζ", true}},      {"eta", {"η", true}},      {"theta", {"θ", true}},
-        {"iota", {"ι", true}},     {"kappa", {"κ", true}},     {"lambda", {"λ", true}},   {"mu", {"μ", true}},
-        {"nu", {"ν", true}},       {"xi", {"ξ", true}},        {"pi", {"π", true}},       {"rho", {"ρ", true}},
-        {"sigma", {"σ", true}},    {"tau", {"τ", true}},       {"upsilon", {"υ", true}},  {"phi", {"φ", true}},
-        {"chi", {"χ", true}},      {"psi", {"ψ", true}},       {"omega", {"ω", true}},    {"Gamma", {"Γ", false}},
-        {"Delta", {"Δ", false}},   {"Theta", {"Θ", false}},    {"Lambda", {"Λ", false}},  {"Xi", {"Ξ", false}},
-        {"Pi", {"Π", false}},      {"Sigma", {"Σ", false}},    {"Phi", {"Φ", false}},     {"Psi", {"Ψ", false}},
-        {"Omega", {"Ω", false}},   {"cdot", {"·", false}},     {"times", {"×", false}},   {"le", {"≤", false}},
-        {"ge", {"≥", false}},      {"ne", {"≠", false}},       {"pm", {"±", false}},      {"infty", {"∞", false}},
-        {"partial", {"∂", false}}, {"oplus", {"⊕", false}},    {"to", {"→", false}},      {"prime", {"′", false}},
-        {"circ", {"°", false}},    {"ldots", {"…", false}},    {"sin", {"sin", false}},   {"cos", {"cos", false}},
-        {"exp", {"exp", false}},   {"sum", {"∑", false}},      {"in", {"∈", false}},      {"quad", {"\u2003", false}}};
+        {"alpha", {"α", true}},    {"beta", {"β", true}},   {"gamma", {"γ", true}},   {"delta", {"δ", true}},
+        {"epsilon", {"ε", true}},  {"zeta", {"ζ", true}},   {"eta", {"η", true}},     {"theta", {"θ", true}},
+        {"iota", {"ι", true}},     {"kappa", {"κ", true}},  {"lambda", {"λ", true}},  {"mu", {"μ", true}},
+        {"nu", {"ν", true}},       {"xi", {"ξ", true}},     {"pi", {"π", true}},      {"rho", {"ρ", true}},
+        {"sigma", {"σ", true}},    {"tau", {"τ", true}},    {"upsilon", {"υ", true}}, {"phi", {"φ", true}},
+        {"chi", {"χ", true}},      {"psi", {"ψ", true}},    {"omega", {"ω", true}},   {"Gamma", {"Γ", false}},
+        {"Delta", {"Δ", false}},   {"Theta", {"Θ", false}}, {"Lambda", {"Λ", false}}, {"Xi", {"Ξ", false}},
+        {"Pi", {"Π", false}},      {"Sigma", {"Σ", false}}, {"Phi", {"Φ", false}},    {"Psi", {"Ψ", false}},
+        {"Omega", {"Ω", false}},   {"cdot", {"·", false}},  {"times", {"×", false}},  {"le", {"≤", false}},
+        {"ge", {"≥", false}},      {"ne", {"≠", false}},    {"pm", {"±", false}},     {"infty", {"∞", false}},
+        {"partial", {"∂", false}}, {"oplus", {"⊕", false}}, {"to", {"→", false}},     {"prime", {"′", false}},
+        {"circ", {"°", false}},    {"ldots", {"…", false}}, {"sin", {"sin", false}},  {"cos", {"cos", false}},
+        {"exp", {"exp", false}},   {"sum", {"∑", false}},   {"in", {"∈", false}},     {"quad", {"\u2003", false}}};
     return all;
 }
 
@@ -75,7 +75,8 @@ private:
     }
     void group(std::size_t to) {
         const std::size_t open = at_++;
-        if (++depth_ > kDeepest) fail(open, "found brackets nested deeper than " + std::to_string(kDeepest) + " levels, expected fewer");
+        if (++depth_ > kDeepest)
+            fail(open, "found brackets nested deeper than " + std::to_string(kDeepest) + " levels, expected fewer");
         while (at_ < to && text_[at_] != '}') atom(to);
         if (at_ >= to) fail(open, "found \"{\" without an end, expected \"}\"");
         ++at_;
@@ -116,7 +117,8 @@ private:
         if (known == symbols().end()) {
             std::vector<std::string> names{"mathbf", "mathrm"};
             for (const auto& s : symbols()) names.push_back(s.first);
-            fail(start, "found \"\\" + name + "\", expected the name of a Greek letter or sign, such as \\alpha" + did_you_mean(name, names));
+            fail(start, "found \"\\" + name + "\", expected the name of a Greek letter or sign, such as \\alpha" +
+                            did_you_mean(name, names));
         }
         put(known->second.text, known->second.italic);
     }
@@ -152,16 +154,21 @@ bool looks_like_mathematics(const std::string& s) {
 MathText parse_math_text(const std::string& text, bool prose) {
     Parser parser(text);
     if (text.find('$') == std::string::npos) {
-        if (!prose && looks_like_mathematics(text)) parser.mathematics(0, text.size());
-        else parser.prose(0, text.size());
+        if (!prose && looks_like_mathematics(text))
+            parser.mathematics(0, text.size());
+        else
+            parser.prose(0, text.size());
         return parser.take();
     }
     bool inside = false;
     for (std::size_t from = 0; from <= text.size();) {
         const std::size_t to = std::min(text.find('$', from), text.size());
-        if (inside && to == text.size()) throw MathTextError(from - 1, "found \"$\" without an end, expected another \"$\"");
-        if (inside) parser.mathematics(from, to);
-        else parser.prose(from, to);
+        if (inside && to == text.size())
+            throw MathTextError(from - 1, "found \"$\" without an end, expected another \"$\"");
+        if (inside)
+            parser.mathematics(from, to);
+        else
+            parser.prose(from, to);
         inside = !inside;
         from = to + 1;
     }

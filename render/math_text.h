@@ -1,7 +1,7 @@
 // math_text.h -- short texts as a paper prints them: "P_{00}", "c_0", "\alpha_i^2", "Triangle $T_1$".
 //
-// Between two $ is mathematics: letters slanted, digits and signs upright, _ and ^ with one character or {several}, names
-// like \alpha. A text without $ is mathematics as a whole when it has _, ^ or \, or no word of two letters.
+// Between two $ is mathematics: letters slanted, digits and signs upright, _ and ^ with one character or {several},
+// names like \alpha. A text without $ is mathematics as a whole when it has _, ^ or \, or no word of two letters.
 #pragma once
 #include <cstddef>
 #include <stdexcept>

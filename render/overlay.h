@@ -5,8 +5,10 @@
 
 namespace isoparm {
 
-/// `pixel`: pixels of this picture to one of the scene's; `letter`: size of letters that say nothing else. The same for every number of threads.
-Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced, const Camera& camera, double pixel, double letter);
+/// `pixel`: pixels of this picture to one of the scene's; `letter`: size of letters that say nothing else. The same for
+/// every number of threads.
+Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced,
+                const Camera& camera, double pixel, double letter);
 
 /// The size of letters, in pixels, on a part width x height of a picture.
 double letter_size(int picture_width, int picture_height, int width, int height);

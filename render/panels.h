@@ -14,8 +14,9 @@ struct View {
     double letter = 0;  // size of letters, pixels
 };
 
-/// The whole picture when the scene has no panels; otherwise panels of equal size in rows, each with room for a title under it when
-/// any has one. Throws Error(usage) when the picture is too small for them. `also_fit`: further points for the cameras.
+/// The whole picture when the scene has no panels; otherwise panels of equal size in rows, each with room for a title
+/// under it when any has one. Throws Error(usage) when the picture is too small for them. `also_fit`: further points
+/// for the cameras.
 std::vector<View> views_of(const Scene& scene, int width, int height, const std::vector<Point>& also_fit);
 
 /// The titles under the views of the panels.

@@ -178,7 +178,8 @@ Image blank(int width, int height, const std::optional<Color>& background) {
     Image image{width, height, {}};
     image.pixels.resize(4 * static_cast<std::size_t>(width) * height);
     if (background)
-        for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>((*background)[static_cast<int>(i % 4)]);
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            image.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>((*background)[static_cast<int>(i % 4)]);
     return image;
 }
 
@@ -189,12 +190,14 @@ struct Quality {
 };
 
 /// The part `area` of a view, in the view's own pixels.
-Picture render_view(const Scene& scene, const View& view, const Area& area, const Quality& how, const std::function<void(double)>& progress) {
+Picture render_view(const Scene& scene, const View& view, const Area& area, const Quality& how,
+                    const std::function<void(double)>& progress) {
     const auto part_of_progress = [&](double from, double share) -> std::function<void(double)> {
         if (!progress) return {};
         return [&progress, from, share](double fraction) { progress(from + share * fraction); };
     };
-    const Camera camera = make_camera(view.camera, view.fitted, view.width, view.height, room_for_text(view.objects, view.letter));
+    const Camera camera =
+        make_camera(view.camera, view.fitted, view.width, view.height, room_for_text(view.objects, view.letter));
     Picture picture;
     picture.tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
     auto start = std::chrono::steady_clock::now();
@@ -206,16 +209,20 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
 
     start = std::chrono::steady_clock::now();
     picture.image = blank(area.width(), area.height(), {});
-    trace(Tracer(traced, camera, how.samples), area, scene.image.background, part_of_progress(kMeshShare, 1 - kMeshShare), picture.image);
+    trace(Tracer(traced, camera, how.samples), area, scene.image.background,
+          part_of_progress(kMeshShare, 1 - kMeshShare), picture.image);
     paint(overlay(scene, view.objects, traced, camera, how.pixel, view.letter), area.x0, area.y0, picture.image);
     picture.seconds_trace = seconds_since(start);
     return picture;
 }
 
-Area common(const Area& a, const Area& b) { return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)}; }
+Area common(const Area& a, const Area& b) {
+    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
 
 void paste(const Image& part, int x0, int y0, Image& whole) {
-    for (int y = 0; y < part.height; ++y) std::copy_n(part.at(0, y), 4 * static_cast<std::size_t>(part.width), whole.at(x0, y0 + y));
+    for (int y = 0; y < part.height; ++y)
+        std::copy_n(part.at(0, y), 4 * static_cast<std::size_t>(part.width), whole.at(x0, y0 + y));
 }
 
 }  // namespace
@@ -224,8 +231,9 @@ Picture render(const Scene& scene, const RenderOptions& options) {
     const int width = checked_size(options.width ? options.width : scene.image.width, "width", kLargestSize);
     const int height = checked_size(options.height ? options.height : scene.image.height, "height", kLargestSize);
     const Area area = checked_area(options, width, height);
-    const Quality how{checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples),
-                      options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height};
+    const Quality how{
+        checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples),
+        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height};
     double reached = 0;  // progress never runs backwards, whatever its parts report
     const auto views = views_of(scene, width, height, options.also_fit);
     Picture all;
@@ -236,8 +244,12 @@ Picture render(const Scene& scene, const RenderOptions& options) {
         if (seen.width() <= 0 || seen.height() <= 0) continue;
         std::function<void(double)> progress;
         if (options.progress)
-            progress = [&, i](double fraction) { options.progress(reached = std::max(reached, (static_cast<double>(i) + fraction) / static_cast<double>(views.size()))); };
-        const Picture one = render_view(scene, v, {seen.x0 - v.x, seen.y0 - v.y, seen.x1 - v.x, seen.y1 - v.y}, how, progress);
+            progress = [&, i](double fraction) {
+                options.progress(reached = std::max(
+                                     reached, (static_cast<double>(i) + fraction) / static_cast<double>(views.size())));
+            };
+        const Picture one =
+            render_view(scene, v, {seen.x0 - v.x, seen.y0 - v.y, seen.x1 - v.x, seen.y1 - v.y}, how, progress);
         paste(one.image, seen.x0 - area.x0, seen.y0 - area.y0, all.image);
         all.tolerance = std::max(all.tolerance, one.tolerance);
         all.certified_error = std::max(all.certified_error, one.certified_error);

@@ -50,7 +50,7 @@ struct Label {
     std::optional<int> side;       // 0 right, 1 above right, 2 above ... 7 below right, 8 on the spot
 };
 
-/// A curve drawn flat. Widths are in pixels of the scene's picture.
+/// A curve, boundary or net drawn flat, or the diameter of a flat dot. Widths are in pixels of the scene's picture.
 struct LineStyle {
     double width = 0;  // 0: a tube instead
     std::vector<double> dash;
@@ -78,7 +78,7 @@ struct SceneObject {
     std::optional<double> radius;  // of tubes, rods and balls, scene units; default a fraction of the scene's size
     Isolines isolines;
     bool boundary = false;         // draw the patches' boundary curves as tubes
-    LineStyle line;                // Kind::curve, Kind::axes
+    LineStyle line;
     Point point;                   // Kind::point
     ControlNet net;                // Kind::net
     std::vector<Label> net_labels; // Kind::net: one a point, or none

@@ -107,6 +107,7 @@ std::vector<Label> read_net_labels(const Json& j, const SceneValues& values, con
     const Json letter = j.is(Kind::object) ? j.at("text", "the letter of the points, such as \"P\"") : j;
     read_math_text(letter, values, false);
     if (letter.string().find_first_of("_$") != std::string::npos) letter.expected("a letter without _ and $, to which the indices are added");
+    if (net.indices.size() != net.points.size()) j.expected("no labels: the points of this net have no indices");
     std::vector<Label> labels(net.points.size(), look);
     for (std::size_t i = 0; i < labels.size(); ++i) labels[i].text = parse_math_text(letter.string() + "_{" + net.indices[i] + "}");
     return labels;
@@ -180,7 +181,7 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
 
     SceneObject o;
     if (surface) {
-        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "radius", "label"});
+        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "radius", "label", "line", "dash", "hidden"});
         o.kind = SceneObject::Kind::surface;
         o.name = values.text(*surface, "the name of a surface");
         builder.surface(*surface);
@@ -193,13 +194,13 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
         o.name = values.text(*curve, "the name of a curve");
         builder.curve(*curve);
     } else if (net) {
-        j.allow_keys({"net", "color", "opacity", "radius", "label", "labels"});
+        j.allow_keys({"net", "color", "opacity", "radius", "label", "labels", "line", "dash", "hidden"});
         o.kind = SceneObject::Kind::net;
         o.net = net_named(*net, builder);
         o.name = net->string();
         if (const auto labels = j.find("labels")) o.net_labels = read_net_labels(*labels, values, o.net);
     } else if (point) {
-        j.allow_keys({"point", "color", "opacity", "radius", "label"});
+        j.allow_keys({"point", "color", "opacity", "radius", "label", "dot", "hidden"});
         o.kind = SceneObject::Kind::point;
         o.point = values.point(*point);
     } else {
@@ -209,9 +210,12 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
         o.line.width = 1.5;
         if (const auto size = j.find("size")) o.label.size = read_pixels(*size, values, 1000, "a size of letters");
     }
+    if (const auto dot = j.find("dot")) o.line.width = read_pixels(*dot, values, 1000, "a diameter");
     o.line = read_line(j, values, o.line);
+    if (surface && o.line.width > 0 && !o.boundary) j.find("line")->fail_at_key("found \"line\" without \"boundary\", expected \"boundary\": true, which it draws");
     if (const auto radius = j.find("radius")) {
-        if (o.line.width > 0) radius->fail_at_key("found both \"line\" and \"radius\", expected a flat line or a tube");
+        if (o.line.width > 0 && !net)
+            radius->fail_at_key(std::string("found both \"radius\" and \"") + (point ? "dot\", expected a ball or a flat dot" : "line\", expected a tube or a flat line"));
         o.radius = values.positive(*radius, "a positive radius in scene units");
     }
     if (const auto label = j.find("label")) read_label(*label, builder, surface ? *surface : curve ? *curve : *label, o);

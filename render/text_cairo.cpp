@@ -7,12 +7,15 @@
 #include <memory>
 
 #include "error.h"
+#include "suggest.h"
 
 namespace isoparm {
 namespace {
 
 // Times as papers print it, with Greek; what comes later is for machines without.
-constexpr const char* kFamilies = "STIXGeneral, STIX, STIX Two Text, FreeSerif, TeX Gyre Termes, Times New Roman, Liberation Serif, DejaVu Serif, serif";
+constexpr const char* kFamilies =
+    "STIXGeneral, STIX, STIX Two Text, FreeSerif, TeX Gyre Termes, Times New Roman, Liberation Serif, DejaVu Serif, "
+    "serif";
 
 template <auto release> struct Release {
     template <class T> void operator()(T* p) const { release(p); }
@@ -22,19 +25,6 @@ using Context = std::unique_ptr<cairo_t, Release<cairo_destroy>>;
 using Layout = std::unique_ptr<PangoLayout, Release<g_object_unref>>;
 using Font = std::unique_ptr<PangoFontDescription, Release<pango_font_description_free>>;
 using FontOptions = std::unique_ptr<cairo_font_options_t, Release<cairo_font_options_destroy>>;
-
-/// Pango ends the program when there is no font at all.
-void require_fonts() {
-    static const bool some = [] {
-        PangoFontFamily** families = nullptr;
-        int count = 0;
-        pango_font_map_list_families(pango_cairo_font_map_get_default(), &families, &count);
-        g_free(families);
-        return count > 0;
-    }();
-    if (!some)
-        throw Error(ErrorKind::io, "no font was found for the labels of the picture, expected at least one; install one (Debian, Ubuntu: apt-get install fonts-stix)");
-}
 
 void check(cairo_t* c) {
     if (const auto status = cairo_status(c); status != CAIRO_STATUS_SUCCESS)
@@ -63,17 +53,24 @@ Layout layout_of(cairo_t* c, const TextRun& run, double size) {
 
 /// Puts the outlines on the context's path, from (x,y) on.
 TextBox set(cairo_t* c, const MathText& text, double size, double x, double y) {
-    require_fonts();
     TextBox box{INFINITY, INFINITY, -INFINITY, -INFINITY, 0};
     double pen = x, subscript = x, furthest = x;
     bool slanted = false;
     for (const TextRun& run : text) {
-        if (run.begins == TextRun::Begins::over_subscript) pen = subscript + 0.06 * size;
-        else pen = std::max(pen, furthest);
-        if (run.begins == TextRun::Begins::subscript) subscript = pen;
-        else if (slanted && !run.italic) pen += 0.04 * size * run.scale;  // a slanted letter leans over what follows
+        if (run.begins == TextRun::Begins::over_subscript)
+            pen = subscript + 0.06 * size;
+        else
+            pen = std::max(pen, furthest);
+        if (run.begins == TextRun::Begins::subscript)
+            subscript = pen;
+        else if (slanted && !run.italic)
+            pen += 0.04 * size * run.scale;  // a slanted letter leans over what follows
         slanted = run.italic;
         const Layout layout = layout_of(c, run, size);
+        if (pango_layout_get_unknown_glyphs_count(layout.get()) > 0)
+            throw Error(ErrorKind::io,
+                        "no font was found that has all letters of " + quoted(run.text) +
+                            " in a label, expected one; install one (Debian, Ubuntu: apt-get install fonts-stix)");
         PangoLayoutLine* line = pango_layout_get_line_readonly(layout.get(), 0);
         PangoRectangle ink, logical;
         pango_layout_line_get_extents(line, &ink, &logical);
@@ -107,7 +104,8 @@ struct Canvas {
 };
 
 /// What `draw` paints on a canvas that shows the pixels of a box, as far as it is in the picture.
-template <class Draw> Coverage painted(double left, double top, double right, double bottom, int width, int height, Draw draw) {
+template <class Draw>
+Coverage painted(double left, double top, double right, double bottom, int width, int height, Draw draw) {
     Coverage all;
     all.x0 = static_cast<int>(std::floor(std::clamp(left, 0.0, double(width))));
     all.y0 = static_cast<int>(std::floor(std::clamp(top, 0.0, double(height))));
@@ -123,11 +121,14 @@ template <class Draw> Coverage painted(double left, double top, double right, do
     const unsigned char* data = cairo_image_surface_get_data(canvas.surface.get());
     const int stride = cairo_image_surface_get_stride(canvas.surface.get());
     all.part.resize(static_cast<std::size_t>(all.width) * all.height);
-    for (int y = 0; y < all.height; ++y) std::copy_n(data + static_cast<std::ptrdiff_t>(y) * stride, all.width, &all.part[static_cast<std::size_t>(y) * all.width]);
+    for (int y = 0; y < all.height; ++y)
+        std::copy_n(data + static_cast<std::ptrdiff_t>(y) * stride, all.width,
+                    &all.part[static_cast<std::size_t>(y) * all.width]);
     return all;
 }
 
-template <class Draw> Coverage painted_about(const std::vector<Vec2>& points, double rim, int width, int height, Draw draw) {
+template <class Draw>
+Coverage painted_about(const std::vector<Vec2>& points, double rim, int width, int height, Draw draw) {
     double left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
     for (const Vec2& p : points) {
         left = std::min(left, p.x), right = std::max(right, p.x);
@@ -162,8 +163,8 @@ Coverage coverage(const Filled& area, int width, int height) {
 Coverage coverage(const Text& text, double rim, int width, int height) {
     const TextBox box = text_box(text.text, text.size);
     const double around = rim + 2;
-    return painted(text.at.x + box.left - around, text.at.y + box.top - around, text.at.x + box.right + around, text.at.y + box.bottom + around, width, height,
-                   [&](cairo_t* c) {
+    return painted(text.at.x + box.left - around, text.at.y + box.top - around, text.at.x + box.right + around,
+                   text.at.y + box.bottom + around, width, height, [&](cairo_t* c) {
                        set(c, text.text, text.size, text.at.x, text.at.y);
                        if (rim > 0) {
                            cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);

@@ -1,6 +1,6 @@
-// text_cairo.h -- how much of each pixel a line, an area or a text covers. text_cairo.cpp is the only file that includes
-// Cairo and Pango; linking them costs 6 ms at the start of the program, loading them when needed would save less than
-// it complicates.
+// text_cairo.h -- how much of each pixel a line, an area or a text covers. text_cairo.cpp is the only file that
+// includes Cairo and Pango; linking them costs 8 ms at the start of the program, loading them when needed would save
+// less than it complicates.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -14,7 +14,7 @@ struct Coverage {
     int x0 = 0, y0 = 0, width = 0, height = 0;
     std::vector<std::uint8_t> part;  // width * height, rows from the top
 };
-/// Within a picture of width x height pixels. Throws Error(io) when no font is installed.
+/// Within a picture of width x height pixels. Throws Error(io) when no font has the letters.
 Coverage coverage(const Polyline& line, int width, int height);
 Coverage coverage(const Filled& area, int width, int height);
 /// Of the letters, made fatter by `rim` pixels on every side.

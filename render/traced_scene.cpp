@@ -76,6 +76,7 @@ private:
             case SceneObject::Kind::net:
                 return add_net(o);
             case SceneObject::Kind::point:
+                if (o.line.width > 0) return;
                 return add_balls({o.point}, radius_of(o, size_), o.color.value_or(point_color()), o.opacity);
             case SceneObject::Kind::axes:
                 return;  // drawn over the picture
@@ -102,7 +103,7 @@ private:
                 result_.things.push_back(thing);
             }
         }
-        if (o.boundary) add_boundary(o, surface);
+        if (o.boundary && !(o.line.width > 0)) add_boundary(o, surface);
     }
 
     const Mesh& mesh_of(const Surface& surface, std::size_t objects) {
@@ -124,22 +125,7 @@ private:
     }
 
     void add_boundary(const SceneObject& o, const Surface& surface) {
-        std::vector<DrawnCurve> edges;
-        std::vector<std::array<Point, 3>> seen;  // shared edges are drawn once
-        const auto same = [&](const Point& a, const Point& b) { return distance(a, b) <= 1e-7 * size_; };
-        for (const Member& m : surface.patches)
-            for (int k = 0; k < m.patch.edges(); ++k) {
-                DrawnCurve edge = drawn_edge(m.patch, k);
-                const std::array<Point, 3> p{edge.position(0), edge.position(0.5), edge.position(1)};
-                const bool known = std::any_of(seen.begin(), seen.end(), [&](const auto& q) {
-                    return same(p[1], q[1]) &&
-                           ((same(p[0], q[0]) && same(p[2], q[2])) || (same(p[0], q[2]) && same(p[2], q[0])));
-                });
-                if (known) continue;
-                seen.push_back(p);
-                edges.push_back(std::move(edge));
-            }
-        add_curves(o, edges, curve_color(), 1);
+        add_curves(o, drawn_edges(surface.patches, size_), curve_color(), 1);
     }
 
     void add_curves(const SceneObject& o, const std::vector<DrawnCurve>& curves, const Color& color, double opacity) {
@@ -173,7 +159,7 @@ private:
             if (distance(a, d) > 1e-9 * size_) rods.push_back({a, a + (1.0 / 3) * (d - a), a + (2.0 / 3) * (d - a), d});
         }
         const Color color = o.color.value_or(net_color());
-        add_tubes(rods, radius, color, o.opacity);
+        if (!(o.line.width > 0)) add_tubes(rods, radius, color, o.opacity);
         add_balls(o.net.points, kNetBall * radius, color, o.opacity);
     }
 

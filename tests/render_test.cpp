@@ -149,13 +149,13 @@ TEST(Render, EachSideHasItsColour) {
 
 TEST(Render, ShadowsThroughTranslucentSheetsAreLighter) {
     std::vector<double> light;
-    for (const double opacity : {1.0, 0.5, 0.0}) {
+    for (const double opacity : {1.0, 0.75, 0.0}) {
         Scene scene = from_above(2, 16, 64);
         draw(scene, "ground", {{"ground", make_bezier_patch({{{-9, -9, -1}, {-9, 9, -1}}, {{9, -9, -1}, {9, 9, -1}}})}})
             .color = Color{0.5, 0.5, 0.5};
         // Out of the picture, between the ground and the light, which comes from the upper left and the viewer.
         SceneObject& roof = draw(
-            scene, "roof", {{"roof", make_bezier_patch({{{-7, 1.01, 0}, {-7, 7, 0}}, {{7, 1.01, 0}, {7, 7, 0}}})}});
+            scene, "roof", {{"roof", make_bezier_patch({{{-7, 1.25, 0}, {-7, 7, 0}}, {{7, 1.25, 0}, {7, 7, 0}}})}});
         roof.opacity = opacity;
         light.push_back(mean(render(scene, {}).image, 1));
     }
