@@ -1,4 +1,4 @@
-// build_coons.cpp -- surfaces that a scene file gives by curves to interpolate: boolean sums.
+// build_coons.cpp -- surfaces that a scene file gives by curves to interpolate: boolean sums over a rectangle.
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
 #include "patches/generalized_coons.h"
@@ -6,6 +6,7 @@
 #include "patches/lagrange.h"
 #include "patches/network.h"
 #include "registry.h"
+#include "repair.h"
 
 namespace isoparm {
 
@@ -44,18 +45,22 @@ std::vector<double> nodes(const Json& j, const char* key, const SceneValues& val
 }  // namespace
 
 CoonsCurves frame_of(const Json& j, SceneBuilder& scene) {
-    const auto curve = [&](const char* key, const char* meaning) { return scene.curve(j.at(key, meaning)).curve; };
-    return {curve("c0", "the curve x(u,0)"), curve("c1", "the curve x(u,1)"), curve("d0", "the curve x(0,v)"), curve("d1", "the curve x(1,v)")};
+    return {scene.curve(j, "c0", "the curve x(u,0)"), scene.curve(j, "c1", "the curve x(u,1)"), scene.curve(j, "d0", "the curve x(0,v)"),
+            scene.curve(j, "d1", "the curve x(1,v)")};
 }
 
 BuiltSurface build_coons(const Json& j, SceneBuilder& scene) {
-    return make_coons(frame_of(j, scene), blend_of(j, scene.values()), part_of(j, scene.values()));
+    const auto blend = blend_of(j, scene.values());
+    const Part part = part_of(j, scene.values());
+    return fitted(frame_of(j, scene), j, scene, [&](const CoonsCurves& c) { return make_coons(c, blend, part); });
 }
 
 BuiltSurface build_coons_hermite(const Json& j, SceneBuilder& scene) {
     const HermiteData data{four_curves(j, "f", "the curves x(0,v), x_u(0,v), x_u(1,v), x(1,v)", scene),
                            four_curves(j, "g", "the curves x(u,0), x_v(u,0), x_v(u,1), x(u,1)", scene)};
-    return make_coons_hermite(data, twist_of(j, scene.values(), Twist::compatible), part_of(j, scene.values()));
+    const Twist twist = twist_of(j, scene.values(), Twist::compatible);
+    const Part part = part_of(j, scene.values());
+    return fitted(HermiteCurves{data, twist}, j, scene, [&](const HermiteCurves& d) { return make_coons_hermite(d.data, twist, part); });
 }
 
 BuiltSurface build_gordon(const Json& j, SceneBuilder& scene) {
@@ -64,7 +69,9 @@ BuiltSurface build_gordon(const Json& j, SceneBuilder& scene) {
     const auto blend = j.find("blend");
     const GordonNetwork network{scene.curves(j.at("u_curves", "the curves x(u, v_nodes[j])"), 2, most_nodes), nodes(j, "v_nodes", values),
                                 scene.curves(j.at("v_curves", "the curves x(u_nodes[i], v)"), 2, most_nodes), nodes(j, "u_nodes", values)};
-    return make_gordon(network, blend ? blends[values.word(*blend, {"lagrange", "hermite"})] : GordonBlend::lagrange, part_of(j, values));
+    const GordonBlend kind = blend ? blends[values.word(*blend, {"lagrange", "hermite"})] : GordonBlend::lagrange;
+    const Part part = part_of(j, values);
+    return fitted(network, j, scene, [&](const GordonNetwork& n) { return make_gordon(n, kind, part); });
 }
 
 BuiltSurface build_lagrange(const Json& j, SceneBuilder& scene) {
@@ -103,8 +110,10 @@ BuiltSurface build_network(const Json& j, SceneBuilder& scene) {
     const auto cross = j.find("cross");
     if (!cross || cross->is(Json::Kind::string)) {
         if (cross) values.word(*cross, {"finite_difference"});
-        return make_network(network, twist, part);
+        return fitted(network, j, scene, [&](const Network& n) { return make_network(n, twist, part); });
     }
+    if (repair_wanted(j, scene))
+        j.at("repair", "true or false").expected("no repair of a network with twists or cross derivatives of its own: they would have to change places with the curves");
     const std::string expected = "\"finite_difference\", {\"twists\": [[d_ij]]} or {\"A\": [...], \"B\": [...]}";
     if (!cross->is(Json::Kind::object)) cross->expected(expected);
     if (const auto twists = cross->find("twists")) {

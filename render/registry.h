@@ -55,12 +55,10 @@ BuiltSurface build_coons_triangle(const Json&, SceneBuilder&);
 /// The keys c0, c1, d0, d1.
 CoonsCurves frame_of(const Json&, SceneBuilder&);
 
-// build_ruled.cpp: of curves to move
+// build_translational.cpp: of curves to move
 BuiltSurface build_translational(const Json&, SceneBuilder&);
 BuiltSurface build_translational_blend(const Json&, SceneBuilder&);
 BuiltSurface build_control_net(const Json&, SceneBuilder&);
-BuiltSurface build_ruled(const Json&, SceneBuilder&);
-BuiltSurface build_cone(const Json&, SceneBuilder&);
 
 // build_composites.cpp: of surfaces
 BuiltSurface build_composite(const Json&, SceneBuilder&);

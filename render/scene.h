@@ -122,6 +122,7 @@ struct Scene {
     CameraSettings camera;
     ImageSettings image;
     Tolerance tolerance;
+    std::vector<std::string> notes;  // what was done to definitions, each with its place
 
     /// nullptr when there is none of that name.
     const Surface* find_surface(const std::string& name) const;

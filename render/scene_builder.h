@@ -34,6 +34,8 @@ public:
     const SceneValues& values() const { return values_; }
     /// A curve or surface given by its name or on the spot.
     BuiltCurve curve(const Json& reference);
+    /// The curve under a key of a definition, which must be there; `meaning` for the message when it is not.
+    Curve curve(const Json& definition, const char* key, const char* meaning) { return curve(definition.at(key, meaning)).curve; }
     BuiltSurface surface(const Json& reference);
     /// A definition under "curves" or "surfaces".
     BuiltCurve named_curve(const Json& definition);
@@ -46,6 +48,10 @@ public:
     std::vector<std::string> surface_names() const;
     /// Surfaces that another one was made of.
     const std::set<std::string>& used_surfaces() const { return used_; }
+
+    /// Something that was done to a definition and that its author should know; each is kept once.
+    void note(const Json& definition, const std::string& text);
+    const std::vector<std::string>& notes() const { return notes_; }
 
 private:
     BuiltCurve build_curve(const Json& definition);
@@ -60,6 +66,7 @@ private:
     std::map<std::string, BuiltSurface> built_surfaces_;
     std::vector<std::string> in_progress_;
     std::set<std::string> used_;
+    std::vector<std::string> notes_;
 };
 
 }  // namespace isoparm

@@ -10,13 +10,18 @@
 #include "curves/isocurve.h"
 #include "patches/bbg.h"
 #include "patches/bezier_triangle.h"
+#include "patches/control_net.h"
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
+#include "patches/gordon.h"
+#include "patches/lagrange.h"
 #include "patches/network.h"
 #include "patches/nielson.h"
 #include "patches/side_vertex.h"
 #include "patches/tensor_bezier.h"
+#include "patches/tensor_hermite.h"
 #include "patches/three_curves.h"
+#include "patches/translational.h"
 
 namespace isoparm {
 namespace {
@@ -50,12 +55,14 @@ Grid<Point> grid(const Json::Value& v) {
     for (const auto& row : v) rows.push_back(points(row));
     return rows;
 }
+std::vector<double> numbers(const Json::Value& v) {
+    std::vector<double> list;
+    for (const auto& x : v) list.push_back(number(x));
+    return list;
+}
 Grid<double> weights(const Json::Value& v) {
     Grid<double> rows;
-    for (const auto& row : v) {
-        rows.emplace_back();
-        for (const auto& w : row) rows.back().push_back(number(w));
-    }
+    for (const auto& row : v) rows.push_back(numbers(row));
     return rows;
 }
 /// Largest coordinate anywhere in the data.
@@ -73,6 +80,8 @@ Curve bezier(const Json::Value& v) { return make_bezier(points(v)); }
 Curve quarter_circle(const Point& from, const Point& to) {
     return make_bezier({from, from + to, to}, {1, kHalfRoot, 1});
 }
+
+SplineCurve cubic(const Json::Value& v) { return {3, {0, 0, 0, 0, 1, 1, 1, 1}, points(v)}; }
 
 CoonsCurves coons_curves(const Json::Value& d) {
     return {bezier(d["c0"]), bezier(d["c1"]), bezier(d["d0"]), bezier(d["d1"])};
@@ -141,6 +150,27 @@ Network network(const Json::Value& d, bool isocurves) {
     }
     return net;
 }
+/// Parameter lines of a Bezier patch over [0,1]^2 at nodes that are not evenly spaced.
+GordonNetwork gordon_network(const Json::Value& d) {
+    const Patch patch = make_bezier_patch(grid(d["P"]));
+    GordonNetwork net{{}, numbers(d["v_nodes"]), {}, numbers(d["u_nodes"])};
+    for (double v : net.v_nodes) net.u_curves.push_back(make_isocurve(patch, Along::u, v));
+    for (double u : net.u_nodes) net.v_curves.push_back(make_isocurve(patch, Along::v, u));
+    return net;
+}
+/// One of r, u, v, uv at all nodes (i,j).
+Grid<Point> at_nodes(const Json::Value& d, const char* what) {
+    Grid<Point> rows(3);
+    for (int i = 0; i <= 2; ++i)
+        for (int j = 0; j <= 2; ++j)
+            rows[i].push_back(point(d["nodes (i,j): r,u,v,uv"][std::to_string(i) + "," + std::to_string(j)][what]));
+    return rows;
+}
+Patch lagrange(const Json::Value& list) {
+    std::vector<Curve> curves;
+    for (const auto& c : list) curves.push_back(bezier(c));
+    return make_lagrange(curves, {0, 1, 2, 3});
+}
 
 Patch build(const std::string& name, const Json::Value& d) {
     if (name == "coons_bilinear") return make_coons(coons_curves(d));
@@ -148,6 +178,11 @@ Patch build(const std::string& name, const Json::Value& d) {
     if (name == "coons_bicubic_hermite") return make_coons_hermite(hermite_data(d));
     if (name == "bezier_tp_54") return make_bezier_patch(grid(d["P[i][j] (i:u,j:v)"]));
     if (name == "gregory_square") return make_coons_hermite(hermite_data(d), Twist::gregory);
+    if (name == "gordon_3x4") return make_gordon(gordon_network(d));
+    if (name == "lagrange_surface") return lagrange(d["curves r(u,0..3)"]);
+    if (name == "translational") return make_translational(bezier(d["c1"]), bezier(d["c2"]));
+    if (name.rfind("hermite_tensor_cell_", 0) == 0)
+        return make_tensor_hermite(at_nodes(d, "r"), at_nodes(d, "u"), at_nodes(d, "v"), at_nodes(d, "uv"));
     if (name == "network_624_625_cell_10") return make_network(network(d, false));
     if (name == "sphere_octant") return make_bezier_patch(grid(d["P"]), weights(d["W"]));
     if (name == "bezier_triangle_deg2") {
@@ -229,7 +264,16 @@ TEST(GoldenLimits, NetworkThroughIsocurvesIsTheSame) {
 
 TEST(GoldenLimits, CoonsIsTheBezierPatchOfItsDiscreteNet) {
     const auto& e = golden()["surfaces"]["coons_bilinear"];
-    expect_points(make_bezier_patch(grid(e["discrete_coons_net"])), e);
+    const Json::Value& d = e["data"];
+    const auto net = grid(e["discrete_coons_net"]);
+    expect_points(make_bezier_patch(net), e);
+    const ControlFrame frame{cubic(d["c0"]), cubic(d["c1"]), cubic(d["d0"]), cubic(d["d1"])};
+    const auto found = coons_net(frame);
+    ASSERT_EQ(found.size(), net.size());
+    for (std::size_t i = 0; i < net.size(); ++i)
+        for (std::size_t j = 0; j < net[i].size(); ++j) EXPECT_LE(distance(found[i][j], net[i][j]), kTolerance) << i << j;
+    expect_points(make_control_net(frame), e);
+    expect_points(make_translational_blend(coons_curves(d)), e);
 }
 
 TEST(GoldenLimits, GregoryCornerHasATangentPlaneAndNoSecondDerivatives) {

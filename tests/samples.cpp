@@ -14,6 +14,7 @@
 #include "patches/basis.h"
 #include "patches/bbg.h"
 #include "patches/bezier_triangle.h"
+#include "patches/cone.h"
 #include "patches/control_net.h"
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
@@ -365,7 +366,7 @@ PatchSample with_cross(Random& r, PatchSample (*make)(const std::array<Curve, 3>
 }
 PatchSample nielson_g1(Random& r) {
     const auto e = random_triangle(r);
-    return {make_nielson_g1(e, normals_of(e, random_cross(r, e))), {e[0], e[1], e[2]}};
+    return {make_nielson_g1(e, normals_of(e, random_cross(r, e, 0.2))), {e[0], e[1], e[2]}};
 }
 /// Edges that are no splines: sines, so that all runs on jets.
 struct Wave {
@@ -566,10 +567,10 @@ const std::vector<PatchType>& patch_types() {
         {"bbg_c1_P1", [](Random& r) { return with_cross(r, bbg_c1, 1); }},
         {"bbg_c1_P3", [](Random& r) { return with_cross(r, bbg_c1, 3); }},
         {"bbg_c1_rational", [](Random& r) { return with_cross(r, bbg_c1, 0, rational_cubic); }},
-        {"nielson_c1", [](Random& r) { return with_cross(r, nielson_c1); }},
+        {"nielson_c1", [](Random& r) { return with_cross(r, nielson_c1); }, true, true, false},
         {"nielson_c1_T1", [](Random& r) { return with_cross(r, nielson_c1, 1); }},
         {"nielson_c1_T2", [](Random& r) { return with_cross(r, nielson_c1, 2); }},
-        {"nielson_c1_rational", [](Random& r) { return with_cross(r, nielson_c1, 0, rational_cubic); }},
+        {"nielson_c1_rational", [](Random& r) { return with_cross(r, nielson_c1, 0, rational_cubic); }, true, true, false},
         {"nielson_g1", nielson_g1, true, false},
         {"transformed",
          [](Random& r) {
@@ -633,12 +634,12 @@ std::array<Curve, 3> random_triangle(Random& r, Curve (*between)(Random&, const 
     const Curve e1 = between(r, b, c), e2 = between(r, c, a), e3 = between(r, a, b);
     return {e1, e2, e3};
 }
-std::array<Curve, 3> random_cross(Random& r, const std::array<Curve, 3>& e) {
+std::array<Curve, 3> random_cross(Random& r, const std::array<Curve, 3>& e, double spread) {
     std::vector<Curve> d;
     for (int k = 0; k < 3; ++k) {
         const Curve &own = e[k], &before = e[(k + 2) % 3], &after = e[(k + 1) % 3];
         const Point first = -before.derivative(1) - 0.5 * own.derivative(0), last = after.derivative(0) + 0.5 * own.derivative(1);
-        d.push_back(make_bezier({first, 0.5 * (first + last) + r.vector(), last}));
+        d.push_back(make_bezier({first, 0.5 * (first + last) + r.vector(spread), last}));
     }
     return {d[0], d[1], d[2]};
 }

@@ -56,6 +56,7 @@ struct PatchType {
     PatchSample (*make)(Random&);
     bool moves_with_its_data = true;  // translation invariance, which some formulas of the seeds do not have
     bool smooth_vertices = true;      // false: cone points at the vertices of the triangle
+    bool bounded_vertices = true;     // false: no bounds of derivatives over boxes that hold a vertex
 };
 const std::vector<PatchType>& patch_types();
 
@@ -80,7 +81,7 @@ Frame random_frame(Random& random, Curve (*between)(Random&, const Point&, const
 std::array<Curve, 3> random_triangle(Random& random,
                                      Curve (*between)(Random&, const Point&, const Point&) = random_cubic);
 /// D_k of such edges that fit the tangents at the vertices; inside they are arbitrary (so are the twists).
-std::array<Curve, 3> random_cross(Random& random, const std::array<Curve, 3>& edges);
+std::array<Curve, 3> random_cross(Random& random, const std::array<Curve, 3>& edges, double spread = 1);
 /// E_k' x D_k for cubic edges and quadratic D_k.
 std::array<Curve, 3> normals_of(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross);
 std::vector<std::vector<Point>> random_net(Random& random, int rows, int columns);

@@ -74,10 +74,12 @@ struct Gauss {
     }
 };
 
+/// m = 1 or 2 times the divided difference with one end.
 class DividedDifference final : public Curve::Concept {
 public:
-    DividedDifference(Curve c, double end) : c_(std::move(c)), end_(end), value_(c_(end)) {
-        c_.taylor(Interval(end_), 0, &enclosure_);
+    DividedDifference(Curve c, double end, int times) : c_(std::move(c)), end_(end), times_(times) {
+        c_.taylor(end_, times_ - 1, at_end_);
+        c_.taylor(Interval(end_), times_ - 1, enclosed_);
         near_ = 0.25 * (c_.end() - c_.begin());
         for (const auto& b : c_.breaks()) near_ = std::min(near_, std::fabs(b.t - end_));
     }
@@ -85,31 +87,33 @@ public:
     double end() const override { return c_.end(); }
     std::vector<Break> breaks() const override { return c_.breaks(); }
 
-    /// Near the end by quadrature (the curve is smooth up to its first break), elsewhere from q_k (t - e) = E_k - q_(k-1).
+    /// Near the end by quadrature (the curve is smooth up to its first break), elsewhere by the recurrence.
     void taylor(double t, int order, Vec3<double>* out) const override {
         const double d = t - end_;
-        Vec3<double> e[4];
+        const bool near = std::fabs(d) <= near_;
+        const int known = near ? std::min(order, known_order(c_) - times_) : -1;
+        if (near) integrate(d, known, out);
+        Vec3<double> e[kMost + 1];
         c_.taylor(t, order, e);
-        if (std::fabs(d) <= near_) integrate(d, std::min(order, 2), out);
+        divide(e, at_end_, d, order, e);
         for (int k = 0; k <= order; ++k)
-            if (std::fabs(d) > near_ || k > 2 || !finite(out[k])) out[k] = (e[k] - (k == 0 ? value_ : out[k - 1])) / d;
+            if (k > known || !finite(out[k])) out[k] = k == 0 || !near ? e[k] : (e_of_lower(t, k) - out[k - 1]) / d;
     }
     void taylor(const Pack& t, int order, Vec3<Pack>* out) const override { lane_by_lane(*this, t, order, out); }
     void taylor(const Interval& t, int order, Vec3<Interval>* out) const override {
         const Interval d = t - Interval(end_);
-        const int known = std::min(order + 1, known_order(c_));
+        const int known = std::min(order + times_, known_order(c_));
         Vec3<Interval> from_end[kMost + 1], here[kMost + 1];
         c_.taylor(hull(t, Interval(end_)), known, from_end);
         c_.taylor(t, order, here);
+        divide(here, enclosed_, d, order, here);
         for (int k = 0; k <= order; ++k)
-            for (int axis = 0; axis < 3; ++axis) {
-                const Interval rest = k == 0 ? enclosure_[axis] : out[k - 1][axis];
-                out[k][axis] = intersection(k < known ? from_end[k + 1][axis] : Interval::all(), (here[k][axis] - rest) / d);
-            }
+            for (int axis = 0; axis < 3; ++axis)
+                out[k][axis] = k + times_ <= known ? intersection(from_end[k + times_][axis], here[k][axis]) : here[k][axis];
         if (t.lo == t.hi || order == 0) return;
         // Mean values: q_k(t) lies in q_k(m) + (k + 1) q_(k+1) (t - m).
         const double m = mid(t);
-        Vec3<Interval> middle[4];
+        Vec3<Interval> middle[kMost + 1];
         taylor(Interval(m), order, middle);
         for (int k = order - 1; k >= 0; --k)
             for (int axis = 0; axis < 3; ++axis)
@@ -117,21 +121,37 @@ public:
     }
 
 private:
-    /// q_k = (k + 1) times the integral of s^k E_(k+1)(e + s d)
+    /// From q (t - e) = E - E(e): q_k = (E_k - q_(k-1)) / (t - e), once or twice. The second time q(e) = E'(e). In and out may be the same.
+    template <class T> void divide(const Vec3<T>* e, const Vec3<T>* at_end, const T& d, int order, Vec3<T>* out) const {
+        for (int step = 0; step < times_; ++step) {
+            const Vec3<T>* in = step == 0 ? e : out;
+            for (int k = 0; k <= order; ++k) out[k] = (in[k] - (k == 0 ? at_end[step] : out[k - 1])) / d;
+        }
+    }
+    /// What the last division divides: the k-th coefficient of the curve, or of its first divided difference.
+    Point e_of_lower(double t, int k) const {
+        Vec3<double> e[kMost + 1];
+        if (times_ == 1) c_.taylor(t, k, e);
+        else DividedDifference(c_, end_, 1).taylor(t, k, e);
+        return e[k];
+    }
+    /// q_k = (k + m)! / k! times the integral of s^k (1 - s)^(m - 1) E_(k+m)(e + s (t - e)); the weights add up to 1.
     void integrate(double d, int order, Vec3<double>* out) const {
         static const Gauss gauss;
         std::fill(out, out + order + 1, Point{});
         for (int i = 0; i < Gauss::count; ++i) {
-            Vec3<double> e[4];
-            c_.taylor(end_ + gauss.node[i] * d, order + 1, e);
-            double weight = gauss.weight[i];
-            for (int k = 0; k <= order; ++k, weight *= gauss.node[i]) out[k] += (k + 1) * weight * e[k + 1];
+            const double s = gauss.node[i];
+            Vec3<double> e[kMost + 1];
+            c_.taylor(end_ + s * d, order + times_, e);
+            double weight = gauss.weight[i] * (times_ == 2 ? 1 - s : 1);
+            for (int k = 0; k <= order; ++k, weight *= s) out[k] += (times_ == 2 ? (k + 1) * (k + 2) : k + 1) * weight * e[k + times_];
         }
     }
     Curve c_;
     double end_, near_;
-    Point value_;
-    Vec3<Interval> enclosure_;
+    int times_;
+    Point at_end_[2];
+    Vec3<Interval> enclosed_[2];
 };
 
 bool polynomial(const PiecewiseBezier* b) { return b && !b->rational(); }
@@ -152,17 +172,18 @@ Curve derivative_curve(const Curve& c) {
     return make_piecewise_bezier(std::move(pieces), std::move(continuity));
 }
 
-Curve divided_difference(const Curve& c, CurveEnd end) {
+Curve divided_difference(const Curve& c, CurveEnd end, int times) {
     const bool first = end == CurveEnd::first;
     if (!polynomial(c.bezier()) || c.bezier()->pieces().size() > 1)
-        return Curve(std::make_shared<DividedDifference>(c, first ? c.begin() : c.end()));
+        return Curve(std::make_shared<DividedDifference>(c, first ? c.begin() : c.end(), times));
     BezierPiece p = c.bezier()->pieces().front();
     const int n = p.degree();
     std::vector<Point> q(std::max(n, 1));
     for (int i = 0; i < n; ++i)
         q[i] = (n / (p.end - p.begin)) * (first ? (p.points[i + 1] - p.points[0]) / (i + 1.0) : (p.points[n] - p.points[i]) / double(n - i));
     p.points = std::move(q);
-    return make_piecewise_bezier({p}, {});
+    const Curve once = make_piecewise_bezier({p}, {});
+    return times == 1 ? once : divided_difference(once, end, times - 1);
 }
 
 }  // namespace isoparm

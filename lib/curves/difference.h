@@ -14,7 +14,7 @@ enum class CurveEnd { first, last };
 /// Interval::all().
 Curve derivative_curve(const Curve& c);
 
-/// q above. An exact Bezier curve where E is one polynomial. At the end itself coefficients have bounds up to one order less than E knows.
-Curve divided_difference(const Curve& c, CurveEnd end);
+/// q above, or for times = 2 the divided difference of that with the same end: (E(t) - E(e) - (t - e) E'(e)) / (t - e)^2. An exact Bezier curve where E is one polynomial. At the end itself coefficients have bounds up to `times` orders less than E knows.
+Curve divided_difference(const Curve& c, CurveEnd end, int times = 1);
 
 }  // namespace isoparm

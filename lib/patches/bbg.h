@@ -17,6 +17,7 @@ Patch make_bbg(const std::array<Curve, 3>& edges, const BbgForm& form);
 
 /// cross[k] = D_k: derivative of the surface along E_k in the direction of the median, from the middle of the edge to the vertex
 /// opposite. `projector` 1 to 3: that one alone; 0: their combination with the weights u^2 (3 - 2u + 6vw).
+/// C1 with any twists; second derivatives at vertices depend on the direction. Edges must be C1: Error(input) otherwise.
 /// Throws IncompatibleError when edges do not close or D_k(0), D_k(1) contradict the tangents of the neighbouring edges.
 Patch make_bbg_c1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross, int projector = 0);
 }

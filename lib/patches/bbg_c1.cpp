@@ -53,10 +53,13 @@ Patch make_bbg_c1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>&
     std::vector<Curve> Q, G2, G3;
     for (int k = 0; k < 3; ++k) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
-        const Curve back = reversed(divided_difference(d.E[j], CurveEnd::first)), on = divided_difference(d.E[i], CurveEnd::last);
-        Q.push_back(linear_combination({1, 1}, {back, on}));
-        G2.push_back(divided_difference(linear_combination({1, 0.5, -1}, {d.D[i], d.slope[i], Q[k]}), CurveEnd::last));
-        G3.push_back(divided_difference(linear_combination({-1, 0.5, -1}, {reversed(d.D[j]), reversed(d.slope[j]), Q[k]}), CurveEnd::last));
+        const Curve &on = d.E[i], back = reversed(d.E[j]);  // both end in the vertex k
+        const auto difference = [](const Curve& c, int times = 1) { return divided_difference(c, CurveEnd::last, times); };
+        Q.push_back(linear_combination({1, -1}, {difference(on), difference(back)}));
+        // Differences are linear, and those of Q are second ones of the edges.
+        const std::vector<Curve> of_Q{difference(on, 2), difference(back, 2)};
+        G2.push_back(linear_combination({1, 0.5, -1, 1}, {difference(d.D[i]), difference(d.slope[i]), of_Q[0], of_Q[1]}));
+        G3.push_back(linear_combination({-1, 0.5, -1, 1}, {difference(reversed(d.D[j])), difference(reversed(d.slope[j])), of_Q[0], of_Q[1]}));
     }
     return make_patch(BbgC1{d.E, {Q[0], Q[1], Q[2]}, {G2[0], G2[1], G2[2]}, {G3[0], G3[1], G3[2]}, projector});
 }

@@ -108,6 +108,15 @@ template <class T, int N> Weights<JetUV<T, N>> weights(const JetUV<T, N>& u, con
     return x;
 }
 
+/// f_ij lies in f_ij(middle) + (i + 1) f_(i+1)j du + (j + 1) f_i(j+1) dv.
+template <class J> void tighten(J& f, const J& middle, const Interval& du, const Interval& dv) {
+    for (int k = J::size - 1; k >= 0; --k) {
+        const auto [i, j] = J::powers[k];
+        if (i + j == J::order) continue;
+        f.c[k] = intersection(f.c[k], middle.c[k] + Interval(i + 1.0) * f.coefficient(i + 1, j) * du + Interval(j + 1.0) * f.coefficient(i, j + 1) * dv);
+    }
+}
+
 /// At a vertex the weights have no limit, but their sum is 1: what the three interpolants agree on is what the surface has there.
 template <class J> void agree_at_vertex(const Vec3<J>* T, int own, double tolerance, Vec3<J>& x) {
     for (int axis = 0; axis < 3; ++axis)
@@ -129,14 +138,41 @@ template <class Ray> struct Nielson {
         if (only != 0) return turned(only - 1, ray, u, v, w);
         return combined<R>(u, v, w);
     }
+    template <class T, int N> struct Terms {
+        Vec3<JetUV<T, N>> rays[3], difference[2];  // T1 - T3, T2 - T3: small near a vertex, where weights change fast
+        Weights<JetUV<T, N>> weight;
+    };
+    template <class T, int I1, int J1, int I2, int J2, int N>
+    Terms<T, N> terms_of(const Jet<T, I1, J1, N>& u, const Jet<T, I2, J2, N>& v, const JetUV<T, N>& w) const {
+        Terms<T, N> x{{turned(0, ray, u, v, w), turned(1, ray, u, v, w), turned(2, ray, u, v, w)}, {}, weights<T, N>(u, v, w)};
+        for (int k : {0, 1}) x.difference[k] = x.rays[k] - x.rays[2];
+        if constexpr (std::is_same_v<T, Interval> && N == 3) {
+            const double mu = mid(u.c[0]), mv = mid(v.c[0]);
+            if (mu + mv > 1 || (u.c[0].lo == u.c[0].hi && v.c[0].lo == v.c[0].hi)) return x;
+            // Mean values about the middle, which keep what cancels there.
+            auto u0 = u, v0 = v, w0 = w;
+            u0.c[0] = mu, v0.c[0] = mv;
+            w0.c[0] = clip(Interval(1) - (u0.c[0] + v0.c[0]), {0, 1});
+            const Vec3<JetUV<T, N>> a[3] = {turned(0, ray, u0, v0, w0), turned(1, ray, u0, v0, w0), turned(2, ray, u0, v0, w0)};
+            const auto middle = weights<T, N>(u0, v0, w0);
+            const Interval du = u.c[0] - Interval(mu), dv = v.c[0] - Interval(mv);
+            for (int axis = 0; axis < 3; ++axis) {
+                tighten(x.rays[2][axis], a[2][axis], du, dv);
+                for (int k : {0, 1}) tighten(x.difference[k][axis], a[k][axis] - a[2][axis], du, dv);
+            }
+            tighten(x.weight.of_u, middle.of_u, du, dv);
+            tighten(x.weight.of_v, middle.of_v, du, dv);
+        }
+        return x;
+    }
     template <class R> R combined(const Polynomial&, const Polynomial&, const Polynomial&) const {
         return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
     }
     template <class R, class T, int I1, int J1, int I2, int J2, int N>
     R combined(const Jet<T, I1, J1, N>& u, const Jet<T, I2, J2, N>& v, const JetUV<T, N>& w) const {
-        const R t[3] = {turned(0, ray, u, v, w), turned(1, ray, u, v, w), turned(2, ray, u, v, w)};
-        const auto weight = weights<T, N>(u, v, w);
-        R x = t[2] + weight.of_u * (t[0] - t[2]) + weight.of_v * (t[1] - t[2]);
+        const Terms<T, N> terms = terms_of(u, v, w);
+        const auto& t = terms.rays;
+        R x = t[2] + terms.weight.of_u * terms.difference[0] + terms.weight.of_v * terms.difference[1];
         if constexpr (std::is_same_v<T, Interval>) {
             for (int axis = 0; axis < 3; ++axis)  // a mean of the three
                 x[axis].c[0] = intersection(x[axis].c[0], hull(hull(t[0][axis].c[0], t[1][axis].c[0]), t[2][axis].c[0]));

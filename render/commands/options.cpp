@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
 #include "error.h"
@@ -113,7 +114,13 @@ Scene Options::scene(const std::map<std::string, double>& more) const {
         parameters[set.substr(0, equals)] = parse_number("--set " + set.substr(0, equals), set.substr(equals + 1));
     }
     for (const auto& [name, value] : more) parameters[name] = value;
-    return load_scene(path, parameters);
+    Scene scene = load_scene(path, parameters);
+    if (!quiet()) print_notes(scene);
+    return scene;
+}
+
+void print_notes(const Scene& scene) {
+    for (const std::string& note : scene.notes) std::fprintf(stderr, "isoparm: note: %s\n", note.c_str());
 }
 
 Tolerance parse_tolerance(const std::string& text) {
