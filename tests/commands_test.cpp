@@ -59,7 +59,7 @@ TEST(Commands, UsageErrorsSuggest) {
     expect("tessellate " + scene("coons") + " -o x.ply --measure angular", 64, "expected one of: geometric, parametric");
     expect("render " + scene("coons") + " -o x.png --exact", 64, "not built yet");
     expect("render " + scene("coons") + " -o x.png --size 10", 64, "expected WIDTHxHEIGHT");
-    expect("figures nothing -o /tmp", 64, "expected one of: coons");
+    expect("figures nothing -o /tmp", 64, "expected one of: cone");
 }
 TEST(Commands, InfoTellsWhatIsThere) {
     expect("info " + scene("sphere"), 0, "octant: bezier, degree 2 x 2, rational");
