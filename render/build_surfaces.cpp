@@ -10,14 +10,12 @@
 namespace isoparm {
 
 namespace {
-
 /// "01", or "0,10" where an index of two digits makes that ambiguous.
 std::string indices(std::initializer_list<int> all, int largest) {
     std::string text;
     for (const int i : all) text += (largest > 9 && !text.empty() ? "," : "") + std::to_string(i);
     return text;
 }
-
 }  // namespace
 
 ControlNet net_of(const Grid<Point>& grid) {

@@ -225,8 +225,8 @@ Scene read_scene(const Json& root, const std::map<std::string, double>& override
         scene.place = objects->place();
         for (const Json& o : objects->children()) scene.objects.push_back(read_object(o, builder));
     }
-    read_panels(root, builder, scene);
     scene.notes = builder.notes();
+    read_panels(root, builder, scene);
     if (scene.objects.empty()) scene.objects = default_objects(scene, builder.used_surfaces());
     scene.image.background = Color{1, 1, 1};
     if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera, values);

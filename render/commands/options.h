@@ -36,8 +36,8 @@ public:
     std::string word(const std::string& name, const std::vector<std::string>& words) const;
 
     const std::vector<std::string>& words() const { return words_; }
-    /// The scene named by the one word of the command line, with its --set parameters; those in `more` count instead. Its
-    /// notes go to stderr.
+    /// The scene named by the one word of the command line, with its --set parameters; those in `more` count instead. Its notes go
+    /// to stderr.
     Scene scene(const std::map<std::string, double>& more = {}) const;
     /// Its path; not one word is an error.
     const std::string& scene_path() const;
