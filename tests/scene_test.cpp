@@ -232,16 +232,6 @@ TEST(ShippedScenes, Teapot) {
     ASSERT_EQ(s.find_surface("teapot")->patches.size(), 32u);
     expect_near(patch(s, "teapot").point(0, 0), {1.4, 0, 2.4}, 0);
 }
-TEST(ShippedScenes, CompositeCoons) {
-    const Scene s = shipped("s002_fig4");
-    const Patch& p = patch(s, "network");
-    expect_near(p.point(1, 1), {2.1, 1.9, 0.6});
-    for (int i = 0; i <= 2; ++i)
-        for (const double t : {0.0, 0.4, 1.3, 2.0}) {
-            expect_near(p.point(i, t), (*s.find_curve("a" + std::to_string(i)))(t));
-            expect_near(p.point(t, i), (*s.find_curve("b" + std::to_string(i)))(t));
-        }
-}
 TEST(ShippedScenes, SideVertex) {
     const Scene s = shipped("side_vertex");
     const Patch& p = patch(s, "shell");
