@@ -73,6 +73,7 @@ struct SceneObject {
     std::string name;              // of the surface or curve
     Label label;
     std::optional<Color> color;    // default by kind
+    std::optional<Color> back;     // Kind::surface: of its other side; default a grey that goes with `color`
     double opacity = 1;
     std::optional<double> radius;  // of tubes, rods and balls, scene units; default a fraction of the scene's size
     Isolines isolines;

@@ -181,10 +181,11 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
 
     SceneObject o;
     if (surface) {
-        j.allow_keys({"surface", "color", "opacity", "isolines", "boundary", "radius", "label", "line", "dash", "hidden"});
+        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "radius", "label", "line", "dash", "hidden"});
         o.kind = SceneObject::Kind::surface;
         o.name = values.text(*surface, "the name of a surface");
         builder.surface(*surface);
+        if (const auto back = j.find("back")) o.back = values.color(*back);
         if (const auto lines = j.find("isolines")) o.isolines = read_isolines(*lines, values);
         if (const auto boundary = j.find("boundary")) o.boundary = values.boolean(*boundary);
     } else if (curve) {

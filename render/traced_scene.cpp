@@ -89,7 +89,7 @@ private:
         Thing thing;
         thing.front = o.color.value_or(surface_color(surfaces_++));
         // Both sides of a translucent sheet look alike, so that it keeps its colour where several lie over each other.
-        thing.back = o.opacity < 1 ? thing.front : back_color(thing.front);
+        thing.back = o.back.value_or(o.opacity < 1 ? thing.front : back_color(thing.front));
         thing.opacity = o.opacity;
         thing.isolines = o.isolines;
         thing.mesh = &mesh;

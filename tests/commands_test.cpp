@@ -59,11 +59,11 @@ TEST(Commands, UsageErrorsSuggest) {
     expect("tessellate " + scene("coons") + " -o x.ply --measure angular", 64, "expected one of: geometric, parametric");
     expect("render " + scene("coons") + " -o x.png --exact", 64, "not built yet");
     expect("render " + scene("coons") + " -o x.png --size 10", 64, "expected WIDTHxHEIGHT");
-    expect("figures nothing -o /tmp", 64, "expected one of: composite_coons");
+    expect("figures nothing -o /tmp", 64, "expected one of: cone");
 }
 TEST(Commands, InfoTellsWhatIsThere) {
     expect("info " + scene("sphere"), 0, "octant: bezier, degree 2 x 2, rational");
-    const Json::Value v = parsed(run("info --json --set=a=2 " + scene("gregory")).out);
+    const Json::Value v = parsed(run("info --json --set=a=2 " + scene("s004_gregory")).out);
     EXPECT_EQ(v["parameters"]["a"].asDouble(), 2);
     EXPECT_EQ(v["curves"].size(), 8u);
     EXPECT_EQ(v["surfaces"][0]["type"].asString(), "coons_hermite");
@@ -83,7 +83,7 @@ TEST(Commands, EvalAnswersInJson) {
     for (const char* key : {"Su", "Sv", "Suu", "Suv", "Svv", "n"}) EXPECT_EQ(p[key].size(), 3u) << key;
     EXPECT_NEAR(pole["n"][2].asDouble(), 1, 1e-15);
     EXPECT_TRUE(pole["gaussian"].isNull());
-    EXPECT_TRUE(parsed(run("eval " + scene("gregory") + " --at 0,0 --json").out)["points"][0]["Suv"].isNull());
+    EXPECT_TRUE(parsed(run("eval " + scene("s004_gregory") + " --surface square --at 0,0 --json").out)["points"][0]["Suv"].isNull());
     expect("eval " + scene("sphere") + " --surface sphere/south/octant --at 0,0", 0, "S         0 0 -1");
     expect("eval --at -0.5,0 -- " + scene("coons"), 65, "found -0.5,0");
 }

@@ -135,6 +135,18 @@ TEST(Render, TheNearerOfTwoSheetsIsSeenFirst) {
     }
 }
 
+TEST(Render, EachSideHasItsColour) {
+    for (const bool above : {true, false}) {
+        Scene scene = from_above(1, 8, 16);
+        if (!above) scene.camera.eye = Point{0, 0, -10};
+        SceneObject& o = draw(scene, "sheet", sheet(0));
+        o.color = Color{0.6, 0, 0};
+        o.back = Color{0, 0, 0.6};
+        const Image image = render(scene, {}).image;
+        EXPECT_EQ(middle(image)[0] > middle(image)[2], above);
+    }
+}
+
 TEST(Render, ShadowsThroughTranslucentSheetsAreLighter) {
     std::vector<double> light;
     for (const double opacity : {1.0, 0.75, 0.0}) {

@@ -176,7 +176,7 @@ void must_load_or_throw(const std::string& text) {
     }
 }
 TEST(Scene, EveryPrefixIsRefusedWithItsPlace) {
-    const std::string text = test::read_all(test::source_folder() + "/scenes/gregory.json");
+    const std::string text = test::read_all(test::source_folder() + "/scenes/s004_gregory.json");
     const std::size_t step = 7;
     for (std::size_t n = 0; n + 3 < text.size(); n += step) must_load_or_throw(text.substr(0, n));
 }
@@ -232,16 +232,6 @@ TEST(ShippedScenes, Teapot) {
     ASSERT_EQ(s.find_surface("teapot")->patches.size(), 32u);
     expect_near(patch(s, "teapot").point(0, 0), {1.4, 0, 2.4}, 0);
 }
-TEST(ShippedScenes, CompositeCoons) {
-    const Scene s = shipped("composite_coons");
-    const Patch& p = patch(s, "network");
-    expect_near(p.point(1, 1), {2, 2, 1.6});
-    for (int i = 0; i <= 2; ++i)
-        for (const double t : {0.0, 0.4, 1.3, 2.0}) {
-            expect_near(p.point(i, t), (*s.find_curve("a" + std::to_string(i)))(t));
-            expect_near(p.point(t, i), (*s.find_curve("b" + std::to_string(i)))(t));
-        }
-}
 TEST(ShippedScenes, SideVertex) {
     const Scene s = shipped("side_vertex");
     const Patch& p = patch(s, "shell");
@@ -249,7 +239,7 @@ TEST(ShippedScenes, SideVertex) {
     expect_near(p.point(0, 0.5), (*s.find_curve("E1"))(0.5));
 }
 TEST(ShippedScenes, Gregory) {
-    const Patch p = patch(shipped("gregory"), "square");
+    const Patch p = patch(shipped("s004_gregory"), "square");
     expect_near(p.point(0.5, 0.5), {1, 1, 1});
     expect_near(*evaluate(p, 0, 0.5).du, {2, 0, 4.5});
     expect_near(*evaluate(p, 0.5, 0).dv, {0, 2, -0.5});
