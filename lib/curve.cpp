@@ -18,7 +18,7 @@ struct Reparametrized {
     }
     template <class S> auto operator()(const S& t) const {
         const double scale = (curve.end() - curve.begin()) / (end - begin);
-        return curve((t - begin) * scale + curve.begin());
+        return curve(kept_in((t - begin) * scale + curve.begin(), curve.begin(), curve.end()));
     }
     Vec3<Polynomial> operator()(const Polynomial& t) const {
         const double scale = (curve.end() - curve.begin()) / (end - begin);

@@ -2,6 +2,7 @@
 
 #include "closest_approach.h"
 #include "curve_doctor_parts.h"
+#include "patches/gordon.h"
 
 namespace isoparm {
 namespace {
@@ -15,21 +16,11 @@ constexpr long kMostSteps = 2000000;
 constexpr const char* kTooMany = "; there are too many curves to try every order and direction";
 constexpr int kMostChangesTold = 12;
 
-/// The curves over the range in which the nodes are.
-std::vector<Curve> run_over(const std::vector<double>& nodes, const std::vector<Curve>& given) {
-    const double begin = given[0].begin(), end = given[0].end(), rounding = break_rounding * (end - begin);
-    bool shared = begin <= nodes.front() + rounding && nodes.back() <= end + rounding;
-    for (const Curve& c : given) shared = shared && std::abs(c.begin() - begin) <= rounding && std::abs(c.end() - end) <= rounding;
-    std::vector<Curve> r;
-    for (const Curve& c : given) r.push_back(shared ? c : reparametrized(c, nodes.front(), nodes.back()));
-    return r;
-}
-
 /// Points of every curve at the nodes, in both directions: candidate 2 k + r is curve k, reversed when r is 1.
 struct Family {
     std::vector<Curve> curves;
     std::vector<std::vector<Point>> at;
-    Family(const std::vector<double>& nodes, const std::vector<Curve>& given) : curves(run_over(nodes, given)) {
+    Family(const std::vector<double>& nodes, const std::vector<Curve>& given) : curves(run_over_nodes(given, nodes)) {
         for (const Curve& c : curves)
             for (const Curve& run : {c, reversed(c)}) {
                 at.emplace_back();

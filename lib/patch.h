@@ -87,7 +87,8 @@ private:
     std::shared_ptr<const Concept> impl_;
 };
 
-/// First derivatives, second derivatives and curvature as a user reads them; what does not exist is empty.
+/// First derivatives, second derivatives and curvature as a user reads them; what does not exist is empty, also where the cells on
+/// both sides of a break disagree.
 struct SurfacePoint {
     Point position;
     std::optional<Point> du, dv, duu, duv, dvv;

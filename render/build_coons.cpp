@@ -116,15 +116,20 @@ BuiltSurface build_network(const Json& j, SceneBuilder& scene) {
         j.at("repair", "true or false").expected("no repair of a network with twists or cross derivatives of its own: they would have to change places with the curves");
     const std::string expected = "\"finite_difference\", {\"twists\": [[d_ij]]} or {\"A\": [...], \"B\": [...]}";
     if (!cross->is(Json::Kind::object)) cross->expected(expected);
-    if (const auto twists = cross->find("twists")) {
-        cross->allow_keys({"twists"});
-        return make_network(network, from_twists(network, values.grid(*twists, 2, 2, 1000)), twist, part);
-    }
-    cross->allow_keys({"twists", "A", "B"});
+    const auto twists = cross->find("twists");
+    if (twists) cross->allow_keys({"twists"});
+    else cross->allow_keys({"twists", "A", "B"});
     const std::size_t m = network.a.size(), n = network.b.size();
-    const CrossDerivatives given{scene.curves(cross->at("A", "the curves x_u(i,v), one for every curve a"), m, m),
-                                 scene.curves(cross->at("B", "the curves x_v(u,j), one for every curve b"), n, n)};
-    return make_network(network, given, twist, part);
+    const auto curves = [&](const char* key, const char* meaning, std::size_t count) { return scene.curves(cross->at(key, meaning), count, count); };
+    try {
+        if (twists) return make_network(network, from_twists(network, values.grid(*twists, 2, 2, 1000)), twist, part);
+        const CrossDerivatives given{curves("A", "the curves x_u(i,v), one for every curve a", m), curves("B", "the curves x_v(u,j), one for every curve b", n)};
+        return make_network(network, given, twist, part);
+    } catch (const IncompatibleError& error) {
+        const auto diagnosis = cure(network);
+        if (diagnosis.fits || diagnosis.misfit.empty()) throw;
+        throw_advised(error, diagnosis.misfit + (diagnosis.data ? ", but the curves fit with " + diagnosis.changes : ""));
+    }
 }
 
 }  // namespace isoparm

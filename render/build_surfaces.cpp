@@ -64,6 +64,16 @@ Grid<double> weights_of(const Json& j, const SceneValues& values, const Grid<Poi
     const auto weights = j.find("weights");
     return weights ? values.weight_grid(*weights, points) : Grid<double>{};
 }
+/// All in one list, or in rows of n + 1, n, ..., 1.
+template <class T, class Read> std::vector<T> rows_of(const Json& j, int n, const Read& read) {
+    const bool rows = j.is(Json::Kind::array) && static_cast<int>(j.size()) == n + 1 && j[0].is(Json::Kind::array) && static_cast<int>(j[0].size()) == n + 1 &&
+                      (std::is_same_v<T, double> || j[0][0].is(Json::Kind::array));
+    if (!rows) return read(j, static_cast<std::size_t>((n + 1) * (n + 2) / 2));
+    std::vector<T> all;
+    for (int k = 0; k <= n; ++k)
+        for (const T& x : read(j[static_cast<std::size_t>(k)], static_cast<std::size_t>(n + 1 - k))) all.push_back(x);
+    return all;
+}
 }  // namespace
 
 BuiltSurface build_bezier_patch(const Json& j, SceneBuilder& scene) {
@@ -111,10 +121,10 @@ BuiltSurface build_triangle(const Json& j, SceneBuilder& scene) {
 BuiltSurface build_bezier_triangle(const Json& j, SceneBuilder& scene) {
     const SceneValues& values = scene.values();
     const int n = values.integer(j.at("degree", "the degree"), 1, max_degree, "the degree");
-    const auto count = static_cast<std::size_t>((n + 1) * (n + 2) / 2);
-    const auto p = values.points(points_of(j), count, count);
+    const auto p = rows_of<Point>(points_of(j), n, [&](const Json& row, std::size_t count) { return values.points(row, count, count); });
     const auto w = j.find("weights");
-    return with_degree({make_bezier_triangle(n, p, w ? values.weights(*w, count) : std::vector<double>{}), net_of(n, p)}, std::to_string(n), w != nullptr);
+    const auto weights = w ? rows_of<double>(*w, n, [&](const Json& row, std::size_t count) { return values.weights(row, count); }) : std::vector<double>{};
+    return with_degree({make_bezier_triangle(n, p, weights), net_of(n, p)}, std::to_string(n), w != nullptr);
 }
 
 }  // namespace isoparm

@@ -36,8 +36,12 @@ std::span<const SceneType<BuiltSurface>> surface_types() {
         {"translational", {"c", "d", "repair"}, build_translational},
         {"translational_blend", {"c0", "c1", "d0", "d1", "repair"}, build_translational_blend},
         {"control_net", {"c0", "c1", "d0", "d1", "repair"}, build_control_net},
-        {"ruled", {"c0", "c1"}, [](const Json& j, SceneBuilder& s) -> BuiltSurface { return make_ruled(s.curve(j, "c0", "the curve x(u,0)"), s.curve(j, "c1", "the curve x(u,1)")); }},
-        {"cone", {"curve", "apex"}, [](const Json& j, SceneBuilder& s) -> BuiltSurface { return make_cone(s.curve(j, "curve", "the curve x(u,0)"), s.values().point(j.at("apex", "the apex [x, y, z]"))); }},
+        {"ruled", {"c0", "c1"}, [](const Json& j, SceneBuilder& s) -> BuiltSurface {
+             return make_ruled(s.curve(j, "c0", "the curve x(u,0)"), s.curve(j, "c1", "the curve x(u,1)"));
+         }},
+        {"cone", {"curve", "apex"}, [](const Json& j, SceneBuilder& s) -> BuiltSurface {
+             return make_cone(s.curve(j, "curve", "the curve x(u,0)"), s.values().point(j.at("apex", "the apex [x, y, z]")));
+         }},
         {"network", {"a", "b", "cross", "twist", "part", "repair"}, build_network},
         {"triangle", {"points"}, build_triangle},
         {"bezier_triangle", {"degree", "points", "weights"}, build_bezier_triangle},

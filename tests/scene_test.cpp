@@ -207,6 +207,18 @@ TEST(Scene, TheSchemaKnowsEveryTypeAndKey) {
     check(surface_types());
 }
 
+TEST(Scene, PointsOfABezierTriangleComeInRowsOrInOneList) {
+    const std::string points[] = {"[0,0,0], [1,0,1], [2,0,0]", "[0,1,1], [1,1,2]", "[0,2,0]"};
+    const auto at = [&](const std::string& list, const std::string& weights) {
+        const test::TemporaryFolder t;
+        test::write_all(t / "s.json", "{ \"isoparm\": 1, \"surfaces\": { \"S\": { \"type\": \"bezier_triangle\", \"degree\": 2, \"points\": " + list +
+                                          ", \"weights\": " + weights + " } } }");
+        return patch(load_scene(t / "s.json"), "S").point(0.2, 0.3);
+    };
+    const Point flat = at("[" + points[0] + ", " + points[1] + ", " + points[2] + "]", "[1,2,3,4,5,6]");
+    EXPECT_EQ(flat, at("[[" + points[0] + "], [" + points[1] + "], [" + points[2] + "]]", "[[1,2,3],[4,5],[6]]"));
+}
+
 // ---- the scenes that are shipped: the numbers their comments promise ------------------------------------------------
 
 TEST(ShippedScenes, Coons) { expect_near(patch(shipped("coons"), "S").point(0.5, 0.5), {1.5, 1.59375, 1.03125}); }

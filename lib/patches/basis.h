@@ -94,10 +94,8 @@ public:
         const Interval width = Interval(nodes_[cell + 1]) - Interval(nodes_[cell]);
         S x = t - nodes_[cell];
         if (width.lo != 1 || width.hi != 1) x = x * constant_for<S>(Interval(1) / width);
-        // The cell is closed: what rounding adds outside of it is not there.
-        if constexpr (!std::is_same_v<S, Polynomial>)
-            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(base(x))>, Interval>) x.c[0] = clip(x.c[0], {0, 1});
-        return x;
+        if constexpr (std::is_same_v<S, Polynomial>) return x;
+        else return kept_in(x, 0, 1);
     }
 
 private:

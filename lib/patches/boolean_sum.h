@@ -54,7 +54,7 @@ private:
         const std::size_t nodes = list.size();
         for (const double b : break_parameters(curves)) {
             const auto near = [&](double t) { return std::abs(t - b) <= break_rounding * (end - begin); };
-            if (std::none_of(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(nodes), near)) list.push_back(b);
+            if (begin < b && b < end && std::none_of(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(nodes), near)) list.push_back(b);
         }
         std::sort(list.begin(), list.end());
         return list;

@@ -8,6 +8,8 @@
 namespace isoparm {
 namespace {
 
+std::string name(const char* family, std::size_t k) { return std::string(family) + "[" + std::to_string(k) + "]"; }
+
 /// The network with its curves run over [0,n] and [0,m].
 Network over_nodes(const Network& network) {
     if (network.a.size() < 2 || network.b.size() < 2)
@@ -37,12 +39,18 @@ Point tangent(const Curve& c, double t, const std::string& name, double size) {
     return right;
 }
 
+void require_c1(const std::vector<Curve>& curves, const char* family) {
+    for (std::size_t k = 0; k < curves.size(); ++k)
+        for (const Break& b : curves[k].breaks())
+            if (b.continuity < 1) tangent(curves[k], b.t, name(family, k), size_of({&curves[k]}));
+}
+
 Patch make(const Network& net, const CrossDerivatives& cross, Twist twist, bool tangents_agree, Part part) {
     HermiteNetwork h;
     for (std::size_t i = 0; i < net.a.size(); ++i) h.f.push_back(net.a[i]), h.f.push_back(reparametrized(cross.A[i], 0, double(net.b.size() - 1)));
     for (std::size_t j = 0; j < net.b.size(); ++j) h.g.push_back(net.b[j]), h.g.push_back(reparametrized(cross.B[j], 0, double(net.a.size() - 1)));
     h.name = [](char family, std::size_t k) {
-        return std::string(1, family == 'f' ? "aA"[k % 2] : "bB"[k % 2]) + "[" + std::to_string(k / 2) + "]";
+        return name(family == 'f' ? (k % 2 ? "A" : "a") : (k % 2 ? "B" : "b"), k / 2);
     };
     return make_patch(hermite_surface(h, twist, tangents_agree, part));
 }
@@ -64,13 +72,13 @@ CrossDerivatives from_twists(const Network& network, const Grid<Point>& d) {
     CrossDerivatives cross;
     for (std::size_t i = 0; i <= m; ++i) {
         std::vector<Point> values;
-        for (std::size_t j = 0; j <= n; ++j) values.push_back(tangent(net.b[j], double(i), "b[" + std::to_string(j) + "]", size));
+        for (std::size_t j = 0; j <= n; ++j) values.push_back(tangent(net.b[j], double(i), name("b", j), size));
         cross.A.push_back(make_hermite(values, d[i]));
     }
     for (std::size_t j = 0; j <= n; ++j) {
         std::vector<Point> values, twists;
         for (std::size_t i = 0; i <= m; ++i) {
-            values.push_back(tangent(net.a[i], double(j), "a[" + std::to_string(i) + "]", size));
+            values.push_back(tangent(net.a[i], double(j), name("a", i), size));
             twists.push_back(d[i][j]);
         }
         cross.B.push_back(make_hermite(values, twists));
@@ -87,6 +95,8 @@ Patch make_network(const Network& network, const CrossDerivatives& cross, Twist 
     if (cross.A.size() != net.a.size() || cross.B.size() != net.b.size())
         throw_input("found " + std::to_string(cross.A.size()) + " cross derivatives A and " + std::to_string(cross.B.size()) + " B, expected one for each of the " +
                     std::to_string(net.a.size()) + " curves a and " + std::to_string(net.b.size()) + " curves b");
+    require_c1(cross.A, "A");
+    require_c1(cross.B, "B");
     return make(net, cross, twist, true, part);
 }
 
