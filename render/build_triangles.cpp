@@ -35,7 +35,7 @@ Patch build_side_vertex(const Json& j, SceneBuilder& scene, const TriangleCurves
     static constexpr SideVertexForm forms[] = {SideVertexForm::delta, SideVertexForm::seed};
     static constexpr SideVertexPart parts[] = {SideVertexPart::sum, SideVertexPart::s1, SideVertexPart::s2, SideVertexPart::s3, SideVertexPart::s4};
     const auto H = j.find("H"), form = j.find("form");
-    return make_side_vertex(curves.edges, H ? make_formula(scene.values().formula(*H)) : Function::polynomial({0, 0, 1}),
+    return make_side_vertex(curves.edges, H ? scene.values().function(*H, 0, 1) : Function::polynomial({0, 0, 1}),
                             form ? forms[scene.values().word(*form, {"delta", "seed"})] : SideVertexForm::delta, parts[part]);
 }
 
