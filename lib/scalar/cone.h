@@ -172,6 +172,14 @@ template <class HF, class G, class A, class B> auto cone(const HF& H, const G& g
     return result;
 }
 
+/// r^2 and tau^2 (1 - tau): cone(SquareOfRadius{}, GregoryRatio{}, a, b) = a^2 b / (a + b).
+struct SquareOfRadius {
+    template <class S> S operator()(const S& r) const { return square(r); }
+};
+struct GregoryRatio {
+    template <class S> S operator()(const S& tau) const { return square(tau) * (1.0 - tau); }
+};
+
 /// Not a polynomial in general.
 template <class HF, class G> auto cone(const HF&, const G& g, const Polynomial&, const Polynomial&) {
     return decltype(g(Polynomial()))(g(Polynomial::nothing()));
