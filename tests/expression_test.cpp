@@ -144,7 +144,7 @@ TEST(Formula, AChoiceThatJumpsHasNoBoundAcrossItsSwitch) {
 }
 
 TEST(Formula, AtAKinkAnswersWithThePieceToItsRight) {
-    for (const char* text : {"if(t<=0,0,t)", "if(t>0,t,0)", "if(0<t,t,0)", "if(0>=t,0,t)", "if(-t>=0,0,t)", "max(0,t)", "max(t,0)", "-min(0,-t)", "(t+abs(t))/2", "(t+abs(-t))/2"}) {
+    for (const char* text : {"if(t<=0,0,t)", "if(t>0,t,0)", "if(0<t,t,0)", "if(0>=t,0,t)", "max(0,t)", "max(t,0)", "-min(0,-t)", "(t+abs(t))/2", "(t+abs(-t))/2"}) {
         const Function f = make_formula(formula(text), 0, 1);
         double number[3];
         Interval point[3];

@@ -402,6 +402,7 @@ Curve corner(Random&, const Point& from, const Point& to) { return make_curve(Bu
 struct FromZero {
     bool larger_of;
     template <class S> S operator()(const S& t) const { return larger_of ? larger(S(0.0), t) : choose(Comparison::less_equal, t, S(0.0), S(0.0), t, true); }
+    Polynomial operator()(const Polynomial&) const { return Polynomial::nothing(); }
 };
 
 const std::vector<double> kT{0, 1}, kT2{0, 0, 1}, kT3{0, 0, 0, 1}, kQuartic{0, 0, 0, 2, -1}, kSmooth{0, 0, 3, -2};

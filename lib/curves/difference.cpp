@@ -88,7 +88,7 @@ public:
     std::vector<Break> breaks() const override { return c_.breaks(); }
 
     /// Near the end by quadrature, which is exact to rounding where the curve is tame between t and the end; elsewhere by the recurrence. Nothing
-    /// says how tame it is, so near the end both have to lie in the enclosure at t: there it is as wide as the rounding of the quotient, or less.
+    /// says how tame it is, so both have to lie in the enclosure at t: it is as wide as the rounding of the quotient, or less.
     void taylor(double t, int order, Vec3<double>* out) const override {
         const double d = t - end_;
         const int known = std::fabs(d) <= near_ ? std::min(order, known_order(c_) - times_) : -1;
@@ -98,7 +98,6 @@ public:
         divide(e, at_end_, d, order, e);
         for (int k = 0; k <= order; ++k)
             if (k > known || !finite(out[k])) out[k] = k == 0 || known < 0 ? e[k] : (e_of_lower(t, k) - out[k - 1]) / d;
-        if (std::fabs(d) > 0.25 * (end() - begin())) return;
         Vec3<Interval> enclosed[kMost + 1];
         taylor(Interval(t), order, enclosed);
         for (int k = 0; k <= order; ++k)
