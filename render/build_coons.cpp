@@ -24,13 +24,11 @@ Twist twist_of(const Json& j, const SceneValues& values, Twist otherwise) {
     return twist ? twists[values.word(*twist, {"compatible", "gregory", "average", "zero"})] : otherwise;
 }
 
-Function formula_of(const Json& j, const SceneValues& values) { return make_formula(values.formula(j)); }
-
 std::optional<Function> blend_of(const Json& j, const SceneValues& values) {
     const auto blend = j.find("blend");
     if (!blend || (blend->is(Json::Kind::string) && blend->string() == "linear")) return {};
     if (blend->is(Json::Kind::string) && blend->string() == "cubic") return cubic_blend();
-    return formula_of(*blend, values);
+    return values.function(*blend, 0, 1);
 }
 
 std::array<Curve, 4> four_curves(const Json& j, const char* key, const char* meaning, SceneBuilder& scene) {
@@ -80,7 +78,7 @@ BuiltSurface build_lagrange(const Json& j, SceneBuilder& scene) {
 
 BuiltSurface build_generalized_coons(const Json& j, SceneBuilder& scene) {
     const SceneValues& values = scene.values();
-    const auto direction = [&](const char* key, std::vector<Functional>& functionals, std::vector<Function>& blends) {
+    const auto direction = [&](const char* key, std::vector<Functional>& functionals, std::vector<Function>& blends, const Curve& along) {
         const Json d = j.at(key, "{\"functionals\": [...], \"blends\": [...]}");
         if (!d.is(Json::Kind::object)) d.expected("{\"functionals\": [...], \"blends\": [...]}");
         d.allow_keys({"functionals", "blends"});
@@ -92,13 +90,14 @@ BuiltSurface build_generalized_coons(const Json& j, SceneBuilder& scene) {
             functionals.push_back({at.key() == "value" ? Functional::Kind::value : Functional::Kind::derivative, values.number(at, "a parameter")});
         }
         for (const Json& h : values.list(d.at("blends", "a formula in t for every functional"), functionals.size(), functionals.size(), "formulas in t"))
-            blends.push_back(formula_of(h, values));
+            blends.push_back(values.function(h, along.begin(), along.end()));
     };
     GeneralizedCoons data;
-    direction("u", data.u, data.blend_u);
-    direction("v", data.v, data.blend_v);
-    data.f = scene.curves(j.at("f", "a curve f_i(v) for every functional of u"), data.u.size(), data.u.size());
-    data.g = scene.curves(j.at("g", "a curve g_j(u) for every functional of v"), data.v.size(), data.v.size());
+    const Json f = j.at("f", "a curve f_i(v) for every functional of u"), g = j.at("g", "a curve g_j(u) for every functional of v");
+    direction("u", data.u, data.blend_u, scene.curves(g, 1, most_nodes).front());
+    direction("v", data.v, data.blend_v, scene.curves(f, 1, most_nodes).front());
+    data.f = scene.curves(f, data.u.size(), data.u.size());
+    data.g = scene.curves(g, data.v.size(), data.v.size());
     return make_generalized_coons(data, part_of(j, values));
 }
 

@@ -35,7 +35,7 @@ Patch build_side_vertex(const Json& j, SceneBuilder& scene, const TriangleCurves
     static constexpr SideVertexForm forms[] = {SideVertexForm::delta, SideVertexForm::seed};
     static constexpr SideVertexPart parts[] = {SideVertexPart::sum, SideVertexPart::s1, SideVertexPart::s2, SideVertexPart::s3, SideVertexPart::s4};
     const auto H = j.find("H"), form = j.find("form");
-    return make_side_vertex(curves.edges, H ? make_formula(scene.values().formula(*H)) : Function::polynomial({0, 0, 1}),
+    return make_side_vertex(curves.edges, H ? scene.values().function(*H, 0, 1) : Function::polynomial({0, 0, 1}),
                             form ? forms[scene.values().word(*form, {"delta", "seed"})] : SideVertexForm::delta, parts[part]);
 }
 
@@ -48,21 +48,23 @@ template <BbgForm::Kind kind> Patch build_bbg(const Json& j, SceneBuilder& scene
         form.j = 1 + int(scene.values().word(two[1], {"P1", "P2", "P3"}));
         if (form.i == form.j) two[1].expected(meaning);
     }
-    return make_bbg(curves.edges, part == 0 ? form : BbgForm{BbgForm::Kind::projector, int(part)});
+    if (part == 4) form.kind = BbgForm::Kind::product;
+    else if (part > 0) form = {BbgForm::Kind::projector, int(part)};
+    return make_bbg(curves.edges, form);
 }
 
 const std::vector<Method>& methods() {
     using Curves = const TriangleCurves&;
     const auto three_curves = [](const Json&, SceneBuilder&, Curves c, std::size_t) { return make_three_curves(c.edges); };
-    const auto bbg_c1 = [](const Json&, SceneBuilder&, Curves c, std::size_t part) { return make_bbg_c1(c.edges, c.along, int(part)); };
-    const auto nielson_c1 = [](const Json&, SceneBuilder&, Curves c, std::size_t part) { return make_nielson_c1(c.edges, c.along, int(part)); };
-    const auto nielson_g1 = [](const Json&, SceneBuilder&, Curves c, std::size_t part) { return make_nielson_g1(c.edges, c.along, int(part)); };
+    const auto bbg_c1 = [](const Json&, SceneBuilder&, Curves c, std::size_t part) { return make_bbg_c1(c.edges, c.along, TrianglePart(part)); };
+    const auto nielson_c1 = [](const Json&, SceneBuilder&, Curves c, std::size_t part) { return make_nielson_c1(c.edges, c.along, TrianglePart(part)); };
+    const auto nielson_g1 = [](const Json&, SceneBuilder&, Curves c, std::size_t part) { return make_nielson_g1(c.edges, c.along, TrianglePart(part)); };
     static const std::vector<std::string> projectors{"sum", "P1", "P2", "P3"}, rays{"sum", "T1", "T2", "T3"};
     static const std::vector<Method> list{
         {"side_vertex", {"H", "form", "part"}, {"sum", "s1", "s2", "s3", "s4"}, nullptr, build_side_vertex},
         {"three_curves", {}, {}, nullptr, three_curves},
         {"bbg_convex", {"part"}, projectors, nullptr, build_bbg<BbgForm::Kind::convex>},
-        {"bbg_boolean", {"projectors", "part"}, projectors, nullptr, build_bbg<BbgForm::Kind::boolean>},
+        {"bbg_boolean", {"projectors", "part"}, {"sum", "P1", "P2", "P3", "P1P2"}, nullptr, build_bbg<BbgForm::Kind::boolean>},
         {"bbg_symmetric", {"part"}, projectors, nullptr, build_bbg<BbgForm::Kind::symmetric>},
         {"bbg_c1", {"cross", "part"}, projectors, "cross", bbg_c1},
         {"nielson_c1", {"cross", "part"}, rays, "cross", nielson_c1},

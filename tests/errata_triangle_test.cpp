@@ -272,7 +272,7 @@ TEST(Errata, BbgC1ProjectorsHaveTheirOwnParametersAndDirections) {
     EXPECT_GE(gap(P3(true, false, false), x, true), 0.1) << "with t, but x_1";
     EXPECT_GE(gap(P3(true, true, false), x, true), 0.1) << "and with x_3, but at the same end twice";
     EXPECT_LE(gap(P3(true, true, true), x, true), kRounding);
-    for (int k = 0; k <= 3; ++k) EXPECT_LE(gap(surface(make_bbg_c1(c.edges(), c.cross(), k)), x), 10 * kRounding) << "projector " << k;
+    for (int k = 0; k <= 3; ++k) EXPECT_LE(gap(surface(make_bbg_c1(c.edges(), c.cross(), TrianglePart(k))), x), 10 * kRounding) << "projector " << k;
 }
 
 TEST(Errata, NielsonRaysMeetTheOppositeEdge) {

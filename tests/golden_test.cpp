@@ -197,9 +197,9 @@ Patch build(const std::string& name, const Json::Value& d) {
     const int part = std::isdigit(name.back()) ? name.back() - '0' : 0;
     if (name.rfind("tri_translational_628", 0) == 0) return make_three_curves(triangle_edges(d));
     if (name.rfind("bbg_c0_", 0) == 0) return make_bbg(triangle_edges(d), bbg_form(name.substr(7)));
-    if (name.rfind("bbg_c1_", 0) == 0) return make_bbg_c1(triangle_edges(d), cross_derivatives(d), part);
+    if (name.rfind("bbg_c1_", 0) == 0) return make_bbg_c1(triangle_edges(d), cross_derivatives(d), TrianglePart(part));
     if (name == "nielson_g1_normals") return make_nielson_g1(triangle_edges(d), normals(d));
-    if (name.rfind("nielson_c1_", 0) == 0) return make_nielson_c1(triangle_edges(d), cross_derivatives(d), name == "nielson_c1_side_vertex" ? 0 : part);
+    if (name.rfind("nielson_c1_", 0) == 0) return make_nielson_c1(triangle_edges(d), cross_derivatives(d), TrianglePart(name == "nielson_c1_side_vertex" ? 0 : part));
     throw std::runtime_error("no builder for " + name);
 }
 

@@ -354,10 +354,10 @@ PatchSample bbg_over(const std::array<Curve, 3>& e, const BbgForm& form) {
 }
 template <BbgForm::Kind kind, int i = 1, int j = 2> PatchSample bbg(Random& r) { return bbg_over(random_triangle(r), {kind, i, j}); }
 PatchSample bbg_c1(const std::array<Curve, 3>& e, const std::array<Curve, 3>& d, int projector = 0) {
-    return {make_bbg_c1(e, d, projector), {e[0], e[1], e[2]}, projector == 0 ? std::vector<int>{} : std::vector<int>{projector - 1}};
+    return {make_bbg_c1(e, d, TrianglePart(projector)), {e[0], e[1], e[2]}, projector == 0 ? std::vector<int>{} : std::vector<int>{projector - 1}};
 }
 PatchSample nielson_c1(const std::array<Curve, 3>& e, const std::array<Curve, 3>& d, int ray = 0) {
-    return {make_nielson_c1(e, d, ray), {e[0], e[1], e[2]}, ray == 0 ? std::vector<int>{} : std::vector<int>{ray % 3, (ray + 1) % 3}};
+    return {make_nielson_c1(e, d, TrianglePart(ray)), {e[0], e[1], e[2]}, ray == 0 ? std::vector<int>{} : std::vector<int>{ray % 3, (ray + 1) % 3}};
 }
 PatchSample with_cross(Random& r, PatchSample (*make)(const std::array<Curve, 3>&, const std::array<Curve, 3>&, int), int part = 0,
                        Curve (*between)(Random&, const Point&, const Point&) = random_cubic) {
@@ -381,6 +381,29 @@ struct Wave {
     Vec3<Polynomial> operator()(const Polynomial&) const { return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()}; }
 };
 Curve wave(Random& r, const Point& from, const Point& to) { return make_curve(Wave{from, to, r.vector(2)}); }
+
+/// A rational cubic with weights of 1e-3 to 1e3; a narrow bump beside the far end; a corner that no break tells of.
+Curve heavy(Random& r, const Point& from, const Point& to) {
+    return make_bezier({from, 0.7 * from + 0.3 * to + r.vector(0.5), 0.3 * from + 0.7 * to + r.vector(0.5), to}, {1, 1e3, 1e-3, 1});
+}
+struct Bump {
+    Point from, to;
+    bool corner;
+    double begin = 0, end = 1;
+    template <class S> Vec3<S> operator()(const S& t) const {
+        const S high = corner ? S(absolute(S(t - 0.9)) - 0.9 + t * 0.8) : S(t * (1.0 - t) * exp(S(-square(S((t - 0.9) * 50.0)))));
+        return {S(from.x + t * (to.x - from.x)), S(from.y + t * (to.y - from.y)), S(from.z + t * (to.z - from.z) + high)};
+    }
+    Vec3<Polynomial> operator()(const Polynomial&) const { return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()}; }
+};
+Curve bump(Random&, const Point& from, const Point& to) { return make_curve(Bump{from, to, false}); }
+Curve corner(Random&, const Point& from, const Point& to) { return make_curve(Bump{from, to, true}); }
+/// H = t from 0 on, with a kink or a switch there.
+struct FromZero {
+    bool larger_of;
+    template <class S> S operator()(const S& t) const { return larger_of ? larger(S(0.0), t) : choose(Comparison::less_equal, t, S(0.0), S(0.0), t, true); }
+    Polynomial operator()(const Polynomial&) const { return Polynomial::nothing(); }
+};
 
 const std::vector<double> kT{0, 1}, kT2{0, 0, 1}, kT3{0, 0, 0, 1}, kQuartic{0, 0, 0, 2, -1}, kSmooth{0, 0, 3, -2};
 
@@ -540,6 +563,8 @@ const std::vector<PatchType>& patch_types() {
         {"side_vertex_quartic", [](Random& r) { return side_vertex<kDelta>(r, kQuartic); }},
         {"side_vertex_smooth", [](Random& r) { return side_vertex<kDelta>(r, kSmooth); }},
         {"side_vertex_t3", [](Random& r) { return side_vertex<kDelta>(r, kT3); }},
+        {"side_vertex_max_0_t", [](Random& r) { return side_vertex(random_triangle(r), make_function(FromZero{true}), kDelta); }, true, false},
+        {"side_vertex_if_t", [](Random& r) { return side_vertex(random_triangle(r), make_function(FromZero{false}), kDelta); }, true, false},
         {"side_vertex_rational",
          [](Random& r) { return side_vertex(random_triangle(r, rational_cubic), Function::polynomial(kT2), kDelta); }},
         {"side_vertex_seed_t", [](Random& r) { return side_vertex<kSeed>(r, kT); }, true, false},
@@ -563,6 +588,9 @@ const std::vector<PatchType>& patch_types() {
         {"bbg_boolean_32_splines", [](Random& r) { return bbg_over(random_triangle(r, cubic_spline), {BbgForm::Kind::boolean, 3, 2}); }},
         {"bbg_symmetric", bbg<BbgForm::Kind::symmetric>},
         {"bbg_symmetric_waves", [](Random& r) { return bbg_over(random_triangle(r, wave), {BbgForm::Kind::symmetric}); }},
+        {"bbg_symmetric_heavy", [](Random& r) { return bbg_over(random_triangle(r, heavy), {BbgForm::Kind::symmetric}); }},
+        {"bbg_symmetric_bump", [](Random& r) { return bbg_over(random_triangle(r, bump), {BbgForm::Kind::symmetric}); }},
+        {"bbg_symmetric_corner", [](Random& r) { return bbg_over(random_triangle(r, corner), {BbgForm::Kind::symmetric}); }},
         {"bbg_c1", [](Random& r) { return with_cross(r, bbg_c1); }},
         {"bbg_c1_P1", [](Random& r) { return with_cross(r, bbg_c1, 1); }},
         {"bbg_c1_P3", [](Random& r) { return with_cross(r, bbg_c1, 3); }},

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "piecewise_bezier.h"
+#include "curves/quotient.h"
 
 namespace isoparm {
 namespace {
@@ -87,17 +87,21 @@ public:
     double end() const override { return c_.end(); }
     std::vector<Break> breaks() const override { return c_.breaks(); }
 
-    /// Near the end by quadrature (the curve is smooth up to its first break), elsewhere by the recurrence.
+    /// Near the end by quadrature, which is exact to rounding where the curve is tame between t and the end; elsewhere by the recurrence. Nothing
+    /// says how tame it is, so both have to lie in the enclosure at t: it is as wide as the rounding of the quotient, or less.
     void taylor(double t, int order, Vec3<double>* out) const override {
         const double d = t - end_;
-        const bool near = std::fabs(d) <= near_;
-        const int known = near ? std::min(order, known_order(c_) - times_) : -1;
-        if (near) integrate(d, known, out);
+        const int known = std::fabs(d) <= near_ ? std::min(order, known_order(c_) - times_) : -1;
+        if (known >= 0) integrate(d, known, out);
         Vec3<double> e[kMost + 1];
         c_.taylor(t, order, e);
         divide(e, at_end_, d, order, e);
         for (int k = 0; k <= order; ++k)
-            if (k > known || !finite(out[k])) out[k] = k == 0 || !near ? e[k] : (e_of_lower(t, k) - out[k - 1]) / d;
+            if (k > known || !finite(out[k])) out[k] = k == 0 || known < 0 ? e[k] : (e_of_lower(t, k) - out[k - 1]) / d;
+        Vec3<Interval> enclosed[kMost + 1];
+        taylor(Interval(t), order, enclosed);
+        for (int k = 0; k <= order; ++k)
+            for (int axis = 0; axis < 3; ++axis) out[k][axis] = std::clamp(out[k][axis], enclosed[k][axis].lo, enclosed[k][axis].hi);
     }
     void taylor(const Pack& t, int order, Vec3<Pack>* out) const override { lane_by_lane(*this, t, order, out); }
     void taylor(const Interval& t, int order, Vec3<Interval>* out) const override {
@@ -159,7 +163,10 @@ bool polynomial(const PiecewiseBezier* b) { return b && !b->rational(); }
 }  // namespace
 
 Curve derivative_curve(const Curve& c) {
-    if (!polynomial(c.bezier())) return Curve(std::make_shared<Derivative>(c));
+    if (!polynomial(c.bezier())) {
+        const auto exact = c.bezier() ? rational_derivative(*c.bezier()) : std::nullopt;
+        return exact ? *exact : Curve(std::make_shared<Derivative>(c));
+    }
     auto pieces = c.bezier()->pieces();
     auto continuity = c.bezier()->continuity();
     for (auto& k : continuity) --k;
@@ -174,16 +181,10 @@ Curve derivative_curve(const Curve& c) {
 
 Curve divided_difference(const Curve& c, CurveEnd end, int times) {
     const bool first = end == CurveEnd::first;
-    if (!polynomial(c.bezier()) || c.bezier()->pieces().size() > 1)
-        return Curve(std::make_shared<DividedDifference>(c, first ? c.begin() : c.end(), times));
-    BezierPiece p = c.bezier()->pieces().front();
-    const int n = p.degree();
-    std::vector<Point> q(std::max(n, 1));
-    for (int i = 0; i < n; ++i)
-        q[i] = (n / (p.end - p.begin)) * (first ? (p.points[i + 1] - p.points[0]) / (i + 1.0) : (p.points[n] - p.points[i]) / double(n - i));
-    p.points = std::move(q);
-    const Curve once = make_piecewise_bezier({p}, {});
-    return times == 1 ? once : divided_difference(once, end, times - 1);
+    if (!c.bezier()) return Curve(std::make_shared<DividedDifference>(c, first ? c.begin() : c.end(), times));
+    const auto once = rational_difference(*c.bezier(), end);
+    if (!once) return Curve(std::make_shared<DividedDifference>(c, first ? c.begin() : c.end(), times));
+    return times == 1 ? *once : divided_difference(*once, end, times - 1);
 }
 
 }  // namespace isoparm

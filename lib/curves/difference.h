@@ -10,11 +10,12 @@ namespace isoparm {
 
 enum class CurveEnd { first, last };
 
-/// E'. The exact Bezier pieces where E is polynomial. Where E is neither that nor rational, Taylor coefficients of order 3 are unknown: NaN, or
+/// E'. The exact Bezier pieces where E has such (of degree 2n where it is rational). Elsewhere Taylor coefficients of order 3 are unknown: NaN, or
 /// Interval::all().
 Curve derivative_curve(const Curve& c);
 
-/// q above, or for times = 2 the divided difference of that with the same end: (E(t) - E(e) - (t - e) E'(e)) / (t - e)^2. An exact Bezier curve where E is one polynomial. At the end itself coefficients have bounds up to `times` orders less than E knows.
+/// q above, or for times = 2 the divided difference of that with the same end: (E(t) - E(e) - (t - e) E'(e)) / (t - e)^2. The exact Bezier pieces where E has
+/// such. Elsewhere numbers lie in the interval that encloses them. At the end itself coefficients have bounds up to `times` orders less than E knows.
 Curve divided_difference(const Curve& c, CurveEnd end, int times = 1);
 
 }  // namespace isoparm

@@ -37,10 +37,12 @@ struct Bbg {
 
     template <class U, class V_, class W> auto operator()(const U& u, const V_& v, const W& w) const {
         const auto P = [&](int k) { return turned(k, Projector{*this}, u, v, w); };
+        const auto missing = [&] { return turned(form.i - 1, Missing{*this, form.j == form.i % 3 + 1}, u, v, w); };
         switch (form.kind) {
             case BbgForm::Kind::convex: return u * P(0) + v * P(1) + w * P(2);
-            case BbgForm::Kind::boolean: return P(form.j - 1) + turned(form.i - 1, Missing{*this, form.j == form.i % 3 + 1}, u, v, w);
+            case BbgForm::Kind::boolean: return P(form.j - 1) + missing();
             case BbgForm::Kind::symmetric: return 0.5 * (P(0) + P(1) + P(2) - (u * V[0] + v * V[1] + w * V[2]));
+            case BbgForm::Kind::product: return P(form.i - 1) - missing();
             default: return P(form.i - 1);
         }
     }
@@ -51,8 +53,8 @@ struct Bbg {
 Patch make_bbg(const std::array<Curve, 3>& edges, const BbgForm& form) {
     const TriangleEdges t(edges);
     const auto is_projector = [](int i) { return i >= 1 && i <= 3; };
-    const bool boolean = form.kind == BbgForm::Kind::boolean;
-    if (!is_projector(form.i) || (boolean && (!is_projector(form.j) || form.i == form.j)))
+    const bool two = form.kind == BbgForm::Kind::boolean || form.kind == BbgForm::Kind::product;
+    if (!is_projector(form.i) || (two && (!is_projector(form.j) || form.i == form.j)))
         throw_input("found the projectors P" + std::to_string(form.i) + " and P" + std::to_string(form.j) + ", expected two different ones of P1, P2, P3");
     const auto differences = [&](CurveEnd end) {
         return std::array<Curve, 3>{divided_difference(t.E[0], end), divided_difference(t.E[1], end), divided_difference(t.E[2], end)};

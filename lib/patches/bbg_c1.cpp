@@ -8,17 +8,6 @@
 namespace isoparm {
 namespace {
 
-struct Square {
-    template <class S> S operator()(const S& r) const { return square(r); }
-};
-/// a b^2 / (a + b) and a^2 b / (a + b) as (a + b)^2 g(a / (a + b)).
-struct FromB {
-    template <class S> S operator()(const S& t) const { return t * square(1.0 - t); }
-};
-struct FromA {
-    template <class S> S operator()(const S& t) const { return square(t) * (1.0 - t); }
-};
-
 /// On the line u = const of length 1-u = v+w, with r = v/(1-u), P1 is the cubic Hermite interpolant of positions and derivatives along e2 - e3:
 ///     P1 = H0(r) E2(u) + H1(r) (1-u) F2(u) + H2(r) (1-u) F3(u) + H3(r) E3(1-u),   F2(u) = D2(u) + E2'(u)/2,   F3(u) = -D3(1-u) + E3'(1-u)/2.
 /// With Q = (E3(1-u) - E2(u))/(1-u) and as H1 + H2 + H3 = r that is E2 + v Q + (1-u) (H1(r) (F2 - Q) + H2(r) (F3 - Q)). At the vertex A both
@@ -28,17 +17,17 @@ struct FromA {
 struct BbgC1 {
     static constexpr Domain domain = Domain::triangle;
     std::array<Curve, 3> E, Q, G2, G3;  // of P1, P2, P3
-    int projector;                      // 0: all
+    TrianglePart part;
 
     struct Projector {
         const BbgC1& s;
         template <class X, class Y, class Z> auto operator()(int k, const X& x, const Y& y, const Z& z) const {
-            return s.E[(k + 1) % 3](x) + y * s.Q[k](x) + (cone(Square{}, FromA{}, y, z) * s.G3[k](x) - cone(Square{}, FromB{}, y, z) * s.G2[k](x));
+            return s.E[(k + 1) % 3](x) + y * s.Q[k](x) + (cone(SquareOfRadius{}, GregoryRatio{}, y, z) * s.G3[k](x) - cone(SquareOfRadius{}, GregoryRatio{}, z, y) * s.G2[k](x));
         }
     };
     template <class U, class V, class W> auto operator()(const U& u, const V& v, const W& w) const {
         const auto P = [&](int k) { return turned(k, Projector{*this}, u, v, w); };
-        if (projector != 0) return P(projector - 1);
+        if (part != TrianglePart::sum) return P(vertex_of(part));
         // Weights with double zeros on the edges that a projector misses; their sum is 1.
         const auto weight = [&](const auto& x, const auto& y, const auto& z) { return square(x) * (3.0 - 2.0 * x + 6.0 * y * z); };
         return weight(u, v, w) * P(0) + weight(v, w, u) * P(1) + weight(w, u, v) * P(2);
@@ -47,8 +36,7 @@ struct BbgC1 {
 
 }  // namespace
 
-Patch make_bbg_c1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross, int projector) {
-    if (projector < 0 || projector > 3) throw_input("found the projector P" + std::to_string(projector) + ", expected P1, P2 or P3, or 0 for all");
+Patch make_bbg_c1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross, TrianglePart part) {
     const CrossData d(edges, cross);
     std::vector<Curve> Q, G2, G3;
     for (int k = 0; k < 3; ++k) {
@@ -61,7 +49,7 @@ Patch make_bbg_c1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>&
         G2.push_back(linear_combination({1, 0.5, -1, 1}, {difference(d.D[i]), difference(d.slope[i]), of_Q[0], of_Q[1]}));
         G3.push_back(linear_combination({-1, 0.5, -1, 1}, {difference(reversed(d.D[j])), difference(reversed(d.slope[j])), of_Q[0], of_Q[1]}));
     }
-    return make_patch(BbgC1{d.E, {Q[0], Q[1], Q[2]}, {G2[0], G2[1], G2[2]}, {G3[0], G3[1], G3[2]}, projector});
+    return make_patch(BbgC1{d.E, {Q[0], Q[1], Q[2]}, {G2[0], G2[1], G2[2]}, {G3[0], G3[1], G3[2]}, part});
 }
 
 }  // namespace isoparm

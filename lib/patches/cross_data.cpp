@@ -1,6 +1,9 @@
 #include "patches/cross_data.h"
 
+#include <cmath>
+
 #include "curves/difference.h"
+#include "curves/modify.h"
 
 namespace isoparm {
 namespace {
@@ -14,7 +17,37 @@ void require_continuity(const std::string& name, const Curve& c, int least, cons
         if (b.continuity < least) throw_input("found " + name + " with a " + (b.continuity < 0 ? "jump" : "corner") + " at " + to_text(b.t) + ", expected " + expected);
 }
 
-/// Proves that c is not 0 anywhere, by intervals that are halved where they do not show it.
+/// Proves that c is C1, with a Lipschitz derivative: every point is inside an interval with bounded second coefficients. The intervals
+/// overlap, so that a corner is not passed over where two of them meet.
+void require_no_corner(const std::string& name, const Curve& c) {
+    if (c.bezier()) return;  // its breaks tell
+    std::vector<Interval> open{{0, 1}};
+    while (!open.empty()) {
+        const Interval t = open.back();
+        open.pop_back();
+        const double width = t.hi - t.lo;
+        Vec3<Interval> x[3];
+        c.taylor(Interval(std::max(0.0, t.lo - width / 64), std::min(1.0, t.hi + width / 64)), 2, x);
+        if (x[2].x.bounded() && x[2].y.bounded() && x[2].z.bounded()) continue;
+        if (width < 1e-7)
+            throw_input("found " + name + " with a derivative that is not proved to be continuous near " + to_text(std::round(1e6 * mid(t)) / 1e6) +
+                        ", expected one without corners, as the surface is built from its derivative");
+        open.push_back({mid(t), t.hi});
+        open.push_back({t.lo, mid(t)});
+    }
+}
+
+/// Scaled by a power of 2 to a length of about 1, for squares of it are taken.
+Curve scaled_to_unit(const Curve& c) {
+    constexpr int samples = 64;
+    double most = 0;
+    for (int k = 0; k <= samples; ++k)
+        for (int axis = 0; axis < 3; ++axis) most = std::max(most, std::fabs(c(k / double(samples))[axis]));
+    const int exponent = most > 0 && std::isfinite(most) ? std::clamp(std::ilogb(most), -1000, 1000) : 0;
+    return exponent == 0 ? c : linear_combination({std::ldexp(1.0, -exponent)}, {c});
+}
+
+/// Proves that c is not 0 anywhere (nor so small that squares vanish), by intervals that are halved where they do not show it.
 void require_nonzero(const std::string& name, const Curve& c) {
     std::vector<Interval> open{{0, 1}};
     while (!open.empty()) {
@@ -22,7 +55,8 @@ void require_nonzero(const std::string& name, const Curve& c) {
         open.pop_back();
         Vec3<Interval> x;
         c.taylor(t, 0, &x);
-        if (!x.x.contains(0) || !x.y.contains(0) || !x.z.contains(0)) continue;
+        const auto nonzero = [](const Interval& a) { return a.lo > 1e-100 || a.hi < -1e-100; };
+        if (nonzero(x.x) || nonzero(x.y) || nonzero(x.z)) continue;
         if (t.hi - t.lo < 1e-7)
             throw_input("found " + name + " with length " + to_text(length(c(mid(t)))) + " at " + to_text(mid(t)) + ", expected a normal, which is not 0 anywhere on the edge");
         open.push_back({mid(t), t.hi});
@@ -44,6 +78,7 @@ CrossData::CrossData(const std::array<Curve, 3>& edges, const std::array<Curve, 
     double tangents = size;
     for (int k = 0; k < 3; ++k) {
         require_continuity(numbered("the edge E", k), E[k], 1, "one without corners, as the surface is built from its derivative");
+        require_no_corner(numbered("the edge E", k), E[k]);
         require_continuity(numbered("the cross derivative D", k), D[k], 0, "a continuous one");
         tangents = std::max({tangents, length(slope[k](0)), length(slope[k](1))});
     }
@@ -56,6 +91,7 @@ CrossData::CrossData(const std::array<Curve, 3>& edges, const std::array<Curve, 
 }
 
 NormalData::NormalData(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& normals) : TriangleEdges(edges), N(over_unit(normals)) {
+    for (auto& n : N) n = scaled_to_unit(n);
     constexpr int samples = 16;
     for (int k = 0; k < 3; ++k) {
         const std::string n = numbered("N", k), name = numbered("the normal N", k);

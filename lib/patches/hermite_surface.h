@@ -10,14 +10,6 @@
 
 namespace isoparm {
 
-struct SquareOfRadius {
-    template <class S> S operator()(const S& r) const { return square(r); }
-};
-/// tau^2 (1 - tau): with H = r^2 the function a^2 b / (a + b)
-struct GregoryRatio {
-    template <class S> S operator()(const S& tau) const { return square(tau) * (1.0 - tau); }
-};
-
 /// Over [0,m] x [0,n]. Gregory's twist at a corner of a cell is T = (p a + q b) / (p + q), p and q the distances to its edges u =
 /// const and v = const, a = d/dv x_u and b = d/du x_v there. The boolean sum carries b; each corner adds -H(u) H(v) (a - b) p / (p + q).
 struct HermiteSurface {

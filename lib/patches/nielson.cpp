@@ -2,15 +2,20 @@
 
 #include "curves/modify.h"
 #include "patch_model.h"
+#include "patches/basis.h"
 #include "patches/cross_data.h"
 #include "scalar/cone.h"
 
 namespace isoparm {
 namespace {
 
-const Function& H1() { static const Function f = Function::polynomial({0, 1, -2, 1}); return f; }
-const Function& H2() { static const Function f = Function::polynomial({0, 0, -1, 1}); return f; }
-const Function& H3() { static const Function f = Function::polynomial({0, 0, 3, -2}); return f; }
+/// H1: derivative at the vertex, H2: derivative on the edge, H3: value on the edge.
+template <int K> struct Hermite {
+    template <class S> S operator()(const S& rho) const { return hermite_polynomials(rho)[K]; }
+};
+using H1 = Hermite<1>;
+using H2 = Hermite<2>;
+using H3 = Hermite<3>;
 
 /// E1(t) - A: from a vertex to the edge opposite.
 struct Chord {
@@ -34,7 +39,7 @@ struct RayC1 {
     std::array<Point, 3> V;
     template <class X, class Y, class Z> auto operator()(int k, const X& x, const Y& y, const Z& z) const {
         const Point along_y = slope[(k + 2) % 3](0), along_z = -slope[(k + 1) % 3](1);
-        return V[k] + square(x) * (y * along_y + z * along_z) + (cone(H2(), Arrival{slope[k], D[k]}, z, y) + cone(H3(), Chord{E[k], V[k]}, z, y));
+        return V[k] + square(x) * (y * along_y + z * along_z) + (cone(H2{}, Arrival{slope[k], D[k]}, z, y) + cone(H3{}, Chord{E[k], V[k]}, z, y));
     }
 };
 
@@ -68,7 +73,7 @@ struct RayG1 {
         (void)x;
         const Chord chord{E[k], V[k]};
         const Constant n{at_vertex[k]};
-        return V[k] + (cone(H1(), Projected<Constant>{chord, n}, z, y) + cone(H2(), Projected<Curve>{chord, N[k]}, z, y) + cone(H3(), chord, z, y));
+        return V[k] + (cone(H1{}, Projected<Constant>{chord, n}, z, y) + cone(H2{}, Projected<Curve>{chord, N[k]}, z, y) + cone(H3{}, chord, z, y));
     }
 };
 
@@ -130,12 +135,12 @@ template <class J> void agree_at_vertex(const Vec3<J>* T, int own, double tolera
 template <class Ray> struct Nielson {
     static constexpr Domain domain = Domain::triangle;
     Ray ray;
-    int only;          // T_1 to T_3 alone; 0: all
+    TrianglePart part;
     double tolerance;  // within which derivatives at a vertex agree
 
     template <class U, class V, class W> auto operator()(const U& u, const V& v, const W& w) const {
         using R = decltype(turned(0, ray, u, v, w));
-        if (only != 0) return turned(only - 1, ray, u, v, w);
+        if (part != TrianglePart::sum) return turned(vertex_of(part), ray, u, v, w);
         return combined<R>(u, v, w);
     }
     template <class T, int N> struct Terms {
@@ -186,24 +191,18 @@ template <class Ray> struct Nielson {
     }
 };
 
-void require_ray(int ray) {
-    if (ray < 0 || ray > 3) throw_input("found the ray interpolant T" + std::to_string(ray) + ", expected T1, T2 or T3, or 0 for all");
-}
-
 }  // namespace
 
-Patch make_nielson_c1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross, int ray) {
-    require_ray(ray);
+Patch make_nielson_c1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross, TrianglePart part) {
     const CrossData d(edges, cross);
     double tangents = d.size;
     for (const auto& s : d.slope) tangents = std::max({tangents, length(s(0)), length(s(1))});
-    return make_patch(Nielson<RayC1>{{d.E, d.slope, d.D, d.V}, ray, 10 * compatibility_tolerance * tangents});
+    return make_patch(Nielson<RayC1>{{d.E, d.slope, d.D, d.V}, part, 10 * compatibility_tolerance * tangents});
 }
 
-Patch make_nielson_g1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& normals, int ray) {
-    require_ray(ray);
+Patch make_nielson_g1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& normals, TrianglePart part) {
     const NormalData d(edges, normals);
-    return make_patch(Nielson<RayG1>{{d.E, d.N, d.V, d.at_vertex}, ray, 10 * compatibility_tolerance * d.size});
+    return make_patch(Nielson<RayG1>{{d.E, d.N, d.V, d.at_vertex}, part, 10 * compatibility_tolerance * d.size});
 }
 
 }  // namespace isoparm

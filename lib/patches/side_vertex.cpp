@@ -60,6 +60,10 @@ Patch make_side_vertex(const std::array<Curve, 3>& edges, const Function& H, Sid
     // No rounding here: H(0) is how far the surface is torn at a vertex, and cone() takes it for 0.
     constexpr double nothing = std::numeric_limits<double>::min();
     if (const double gap = std::abs(H(0)); !(gap <= nothing)) throw IncompatibleError("H(0) = 0", gap, nothing);
+    // Nor may H jump there: next to 0 it is as small as the interval shows it to be.
+    Interval near;
+    H.taylor(Interval(0, 1e-300), 0, &near);
+    if (const double gap = mag(near); !(gap <= 1e-12)) throw IncompatibleError("H(t) -> 0 for t -> 0", gap, 1e-12);
     if (const double gap = std::abs(H(1) - 1); !(gap <= 1e-12)) throw IncompatibleError("H(1) = 1", gap, 1e-12);
     return make_patch(SideVertex{t.E, t.V[0], t.V[1], t.V[2], H, form, part});
 }

@@ -225,8 +225,8 @@ TEST(Identity, C1SurfacesAreCombinationsOfTheirParts) {
     each_seed([](Random& r) {
         Net b(4, r);
         const auto e = b.edges(), d = b.cross();
-        const Patch P[] = {make_bbg_c1(e, d, 1), make_bbg_c1(e, d, 2), make_bbg_c1(e, d, 3)},
-                    T[] = {make_nielson_c1(e, d, 1), make_nielson_c1(e, d, 2), make_nielson_c1(e, d, 3)};
+        const Patch P[] = {make_bbg_c1(e, d, TrianglePart::of_A), make_bbg_c1(e, d, TrianglePart::of_B), make_bbg_c1(e, d, TrianglePart::of_C)},
+                    T[] = {make_nielson_c1(e, d, TrianglePart::of_A), make_nielson_c1(e, d, TrianglePart::of_B), make_nielson_c1(e, d, TrianglePart::of_C)};
         const auto weight = [](double a, double b2, double c) { return a * a * (3 - 2 * a + 6 * b2 * c); };
         EXPECT_LE(difference(make_bbg_c1(e, d),
                              [&](double u, double v, double w) {
