@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "run_program.h"
+#include "scalar/polynomial.h"
+#include "scalar/vec.h"
 
 namespace isoparm::test {
 
@@ -32,6 +34,22 @@ inline double number(const Json::Value& v) {
     if (!v.isString()) return v.asDouble();
     const std::string s = v.asString();
     return s == "sqrt(2)/2" ? std::sqrt(0.5) : s == "1/2" ? 0.5 : std::stod(s);
+}
+inline Point point(const Json::Value& v) { return {number(v[0]), number(v[1]), number(v[2])}; }
+inline std::vector<Point> points(const Json::Value& v) {
+    std::vector<Point> list;
+    for (const auto& p : v) list.push_back(point(p));
+    return list;
+}
+/// Bezier points of the normal E' x D along an edge.
+inline std::vector<Point> normal_points(const Json::Value& edge, const Json::Value& across) {
+    const auto e = points(edge), d = points(across);
+    const int m = int(e.size()) - 2, n = int(d.size()) - 1;
+    std::vector<Point> normal(m + n + 1);
+    for (int i = 0; i <= m; ++i)
+        for (int j = 0; j <= n; ++j)
+            normal[i + j] += (binomial(m, i) * binomial(n, j) / binomial(m + n, i + j)) * cross((m + 1.0) * (e[i + 1] - e[i]), d[j]);
+    return normal;
 }
 /// Largest number in the data, which rounding errors scale with.
 inline double magnitude(const Json::Value& v) {

@@ -109,27 +109,14 @@ void edges(SceneText& t, const Value& d) {
 void cross_derivatives(SceneText& t, const Value& d) {
     for (const char* key : {"D1", "D2", "D3"}) t.surface()["cross"].append(t.curve(d[key]));
 }
-double binomial(int n, int k) { return k == 0 ? 1 : binomial(n, k - 1) * (n - k + 1) / k; }
-/// Bezier points of the normal E' x D along an edge.
-Value normal(const Value& e, const Value& d) {
-    const int m = int(e.size()) - 2, n = int(d.size()) - 1;
-    std::vector<std::array<double, 3>> points(m + n + 1);
-    for (int i = 0; i <= m; ++i)
-        for (int j = 0; j <= n; ++j)
-            for (int x = 0; x < 3; ++x) {
-                const int y = (x + 1) % 3, z = (x + 2) % 3;
-                const auto slope = [&](int axis) { return (m + 1) * (number(e[i + 1][axis]) - number(e[i][axis])); };
-                points[i + j][x] += binomial(m, i) * binomial(n, j) / binomial(m + n, i + j) *
-                                    (slope(y) * number(d[j][z]) - slope(z) * number(d[j][y]));
-            }
-    Value v(Json::arrayValue);
-    for (const auto& p : points) v.append(list(p[0], p[1], p[2]));
-    return v;
-}
 void nielson_g1(SceneText& t, const Value& d) {
     t.surface()["method"] = "nielson_g1";
     for (const char* k : {"1", "2", "3"})
-        t.surface()["normals"].append(t.curve(normal(d[std::string("E") + k], d[std::string("D") + k])));
+        {
+        Value n(Json::arrayValue);
+        for (const Point& p : normal_points(d[std::string("E") + k], d[std::string("D") + k])) n.append(list(p.x, p.y, p.z));
+        t.surface()["normals"].append(t.curve(n));
+    }
 }
 void side_vertex(SceneText& t, const std::string& name, const Value& d) {
     static const std::map<std::string, std::string> blends{

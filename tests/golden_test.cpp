@@ -23,17 +23,11 @@
 namespace isoparm {
 namespace {
 
-using test::golden, test::in_cell, test::magnitude, test::number;
+using test::golden, test::in_cell, test::magnitude, test::number, test::point, test::points;
 
 constexpr double kTolerance = test::kGoldenTolerance;
 const double kHalfRoot = std::sqrt(0.5);
 
-Point point(const Json::Value& v) { return {number(v[0]), number(v[1]), number(v[2])}; }
-std::vector<Point> points(const Json::Value& v) {
-    std::vector<Point> list;
-    for (const auto& p : v) list.push_back(point(p));
-    return list;
-}
 Grid<Point> grid(const Json::Value& v) {
     Grid<Point> rows;
     for (const auto& row : v) rows.push_back(points(row));
@@ -78,15 +72,8 @@ Function blend(const std::string& name) {
     throw std::runtime_error("no blend " + name);
 }
 std::array<Curve, 3> cross_derivatives(const Json::Value& d) { return {bezier(d["D1"]), bezier(d["D2"]), bezier(d["D3"])}; }
-/// E_k' x D_k, by the product of Bezier polynomials of degree 2.
 std::array<Curve, 3> normals(const Json::Value& d) {
-    const auto normal = [&](const char* edge, const char* across) {
-        const auto p = points(d[edge]), b = points(d[across]);
-        std::vector<Point> n(5);
-        for (int i = 0; i <= 2; ++i)
-            for (int j = 0; j <= 2; ++j) n[i + j] += (binomial(2, i) * binomial(2, j) / binomial(4, i + j)) * cross(3.0 * (p[i + 1] - p[i]), b[j]);
-        return make_bezier(n);
-    };
+    const auto normal = [&](const char* edge, const char* across) { return make_bezier(test::normal_points(d[edge], d[across])); };
     return {normal("E1", "D1"), normal("E2", "D2"), normal("E3", "D3")};
 }
 BbgForm bbg_form(const std::string& name) {
