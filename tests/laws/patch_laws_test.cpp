@@ -1,4 +1,4 @@
-// patch_laws_test.cpp -- what every surface type must satisfy at points. New types: one row in samples.cpp.
+// patch_laws_test.cpp -- what every surface type must satisfy at points. New types: one row in samples_*.cpp.
 #include <gtest/gtest.h>
 
 #include "error.h"
