@@ -14,9 +14,11 @@ namespace {
 
 using Three = std::array<Curve, 3>;
 
+constexpr const char* common_keys[] = {"type", "method", "edges", "repair"};
+
 struct Method {
     const char* name;
-    std::vector<std::string> keys;   // besides type, method, edges
+    std::vector<std::string> keys;   // besides common_keys
     std::vector<std::string> parts;  // the whole first; none: it has no parts
     const char* along;               // the key of the curves given along the edges; none: nullptr
     Patch (*build)(const Json& j, SceneBuilder& scene, const TriangleCurves& curves, std::size_t part);
@@ -75,14 +77,22 @@ const std::vector<Method>& methods() {
 
 }  // namespace
 
+std::map<std::string, std::vector<std::string>> triangle_methods() {
+    std::map<std::string, std::vector<std::string>> keys;
+    for (const auto& m : methods()) {
+        keys[m.name] = {"edges", "repair"};
+        keys[m.name].insert(keys[m.name].end(), m.keys.begin(), m.keys.end());
+    }
+    return keys;
+}
+
 BuiltSurface build_coons_triangle(const Json& j, SceneBuilder& scene) {
     std::vector<std::string> names;
     std::string all;
     for (const auto& m : methods()) names.push_back(m.name), all += (all.empty() ? "" : ", ") + names.back();
     const Method& method = methods()[scene.values().word(j.at("method", "one of the methods " + all), names)];
-    static const std::vector<std::string> common{"type", "method", "edges", "repair"};
     for (const auto& key : j.children())
-        if (std::find(common.begin(), common.end(), key.key()) == common.end() && std::find(method.keys.begin(), method.keys.end(), key.key()) == method.keys.end())
+        if (std::find(std::begin(common_keys), std::end(common_keys), key.key()) == std::end(common_keys) && std::find(method.keys.begin(), method.keys.end(), key.key()) == method.keys.end())
             key.fail_at_key("found \"" + key.key() + "\", expected no such key for the method " + method.name);
     const auto named = j.find("part");
     const std::size_t part = named ? scene.values().word(*named, method.parts) : 0;

@@ -1,5 +1,6 @@
 // registry.h -- every `type` of a scene file: its keys and what builds it.
 #pragma once
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -51,6 +52,8 @@ BuiltSurface build_network(const Json&, SceneBuilder&);
 
 // build_triangles.cpp: of three edges
 BuiltSurface build_coons_triangle(const Json&, SceneBuilder&);
+/// Every method of coons_triangle, with its keys besides type and method.
+std::map<std::string, std::vector<std::string>> triangle_methods();
 
 /// The keys c0, c1, d0, d1.
 CoonsCurves frame_of(const Json&, SceneBuilder&);

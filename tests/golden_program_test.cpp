@@ -1,56 +1,20 @@
 // golden_program_test.cpp -- the program from end to end: a scene written from the golden data, `eval --json` on it, and the
 // numbers that a user reads against the golden ones. Golden numbers go into the scene as they stand, some of them texts such
 // as "sqrt(2)/2", which the scene reads as expressions.
-#include <gtest/gtest.h>
-#include <json/json.h>
-
-#include <cmath>
-#include <fstream>
-#include <sstream>
-
-#include "run_program.h"
+#include "golden.h"
 
 namespace isoparm::test {
 namespace {
 
 using Json::Value;
 
-constexpr double kTolerance = 1e-12;  // of the magnitude of the data
 const std::string kRoot = "sqrt(2)/2";
 
-const Value& golden() {
-    static const Value root = [] {
-        std::ifstream file(source_folder() + "/tests/data/golden.json");
-        Value v;
-        file >> v;
-        return v;
-    }();
-    return root;
-}
-double number(const Value& v) {
-    if (!v.isString()) return v.asDouble();
-    return v.asString() == kRoot ? std::sqrt(0.5) : v.asString() == "1/2" ? 0.5 : std::stod(v.asString());
-}
-double magnitude(const Value& v) {
-    double m = 0;
-    if (v.isObject() || v.isArray())
-        for (const auto& x : v) m = std::max(m, magnitude(x));
-    else if (v.isNumeric() || v.isString())
-        m = std::abs(v.isNumeric() ? v.asDouble() : std::strtod(v.asCString(), nullptr));
-    return m;
-}
 template <class... T> Value list(const T&... items) {
     Value v(Json::arrayValue);
     (v.append(items), ...);
     return v;
 }
-Value text(double x) {
-    std::ostringstream s;
-    s.precision(17);
-    s << x;
-    return s.str();
-}
-
 /// A scene with one surface S; curves are added by name.
 class SceneText {
 public:
@@ -145,27 +109,14 @@ void edges(SceneText& t, const Value& d) {
 void cross_derivatives(SceneText& t, const Value& d) {
     for (const char* key : {"D1", "D2", "D3"}) t.surface()["cross"].append(t.curve(d[key]));
 }
-double binomial(int n, int k) { return k == 0 ? 1 : binomial(n, k - 1) * (n - k + 1) / k; }
-/// Bezier points of the normal E' x D along an edge.
-Value normal(const Value& e, const Value& d) {
-    const int m = int(e.size()) - 2, n = int(d.size()) - 1;
-    std::vector<std::array<double, 3>> points(m + n + 1);
-    for (int i = 0; i <= m; ++i)
-        for (int j = 0; j <= n; ++j)
-            for (int x = 0; x < 3; ++x) {
-                const int y = (x + 1) % 3, z = (x + 2) % 3;
-                const auto slope = [&](int axis) { return (m + 1) * (number(e[i + 1][axis]) - number(e[i][axis])); };
-                points[i + j][x] += binomial(m, i) * binomial(n, j) / binomial(m + n, i + j) *
-                                    (slope(y) * number(d[j][z]) - slope(z) * number(d[j][y]));
-            }
-    Value v(Json::arrayValue);
-    for (const auto& p : points) v.append(list(p[0], p[1], p[2]));
-    return v;
-}
 void nielson_g1(SceneText& t, const Value& d) {
     t.surface()["method"] = "nielson_g1";
     for (const char* k : {"1", "2", "3"})
-        t.surface()["normals"].append(t.curve(normal(d[std::string("E") + k], d[std::string("D") + k])));
+        {
+        Value n(Json::arrayValue);
+        for (const Point& p : normal_points(d[std::string("E") + k], d[std::string("D") + k])) n.append(list(p.x, p.y, p.z));
+        t.surface()["normals"].append(t.curve(n));
+    }
 }
 void side_vertex(SceneText& t, const std::string& name, const Value& d) {
     static const std::map<std::string, std::string> blends{
@@ -244,51 +195,18 @@ std::string scene_of(const std::string& name, const Value& d) {
 }
 
 // ---- the comparison -------------------------------------------------------------------------------------------------
-double parameter(const Value& data, int axis, const Value& at) {
-    if (!data.isMember("cell")) return number(at);
-    const double t = data["cell"][axis].asDouble() + number(at);
-    return number(at) == 1 ? std::nextafter(t, 0.0) : t;  // second derivatives may jump to the next cell
-}
-void expect_equal(const Value& found, const Value& expected, double size) {
-    for (const char* what : {"S", "Su", "Sv", "Suu", "Suv", "Svv", "n"}) {
-        const Value &e = expected[what], &f = found[what];
-        if (!expected.isMember(what) || (std::string(what) == "n" && e.isNull())) continue;
-        ASSERT_EQ(f.isNull(), e.isNull()) << what << " of " << found;
-        double length = std::string(what) == "n" ? 1 : size, gap = 0;
-        for (int k = 0; k < 3 && !e.isNull(); ++k) {
-            length = std::max(length, std::abs(number(e[k])));
-            gap = std::max(gap, std::abs(number(e[k]) - f[k].asDouble()));
-        }
-        EXPECT_LE(gap, kTolerance * length) << what << " of " << found;
-    }
-}
-
 class GoldenProgram : public ::testing::TestWithParam<std::string> {};
 
-void expect_eval(const std::string& scene_text, const Value& e) {
-    std::string at;
-    std::vector<Value> expected;
-    const auto ask = [&](const Value& u, const Value& v, const Value& answer) {
-        at += " --at " + u.asString() + "," + v.asString();
-        expected.push_back(answer);
-    };
-    for (const auto& p : e["points"]) ask(text(parameter(e["data"], 0, p["u"])), text(parameter(e["data"], 1, p["v"])), p);
-    for (const auto& limit : e["vertex_limits"]) ask(limit["vertex"] == "A" ? "1" : "0", limit["vertex"] == "B" ? "1" : "0", limit);
-
-    const TemporaryFolder folder;
-    const std::string scene = folder / "scene.json";
-    write_all(scene, scene_text);
-    const Outcome o = run("eval '" + scene + "' --surface S --json" + at);
-    ASSERT_EQ(o.code, 0) << o.err << scene_text;
-    Value answer;
-    std::istringstream(o.out) >> answer;
-    ASSERT_EQ(answer["points"].size(), expected.size());
-    for (int k = 0; k < int(expected.size()); ++k) expect_equal(answer["points"][k], expected[k], magnitude(e["data"]));
+void expect_golden(const std::string& scene, const Value& e) {
+    std::vector<GoldenPoint> points;
+    for (const auto& p : e["points"]) points.push_back({in_cell(e["data"], 0, p["u"]), in_cell(e["data"], 1, p["v"]), p});
+    for (const auto& limit : e["vertex_limits"]) points.push_back({limit["vertex"] == "A" ? 1.0 : 0, limit["vertex"] == "B" ? 1.0 : 0, limit});
+    expect_eval(scene, points, magnitude(e["data"]));
 }
 
 TEST_P(GoldenProgram, EvalOfASceneTellsTheGoldenNumbers) {
     const Value& e = golden()["surfaces"][GetParam()];
-    expect_eval(scene_of(GetParam(), e["data"]), e);
+    expect_golden(scene_of(GetParam(), e["data"]), e);
 }
 
 TEST(GoldenTypes, TheBilinearCoonsPatchByOtherTypes) {
@@ -298,11 +216,11 @@ TEST(GoldenTypes, TheBilinearCoonsPatchByOtherTypes) {
         SceneText t;
         t.surface()["type"] = type;
         coons(t, d);
-        expect_eval(t.string(), e);
+        expect_golden(t.string(), e);
     }
     SceneText net, generalized, gordon;
     net.bezier_surface("S", e["discrete_coons_net"]);
-    expect_eval(net.string(), e);
+    expect_golden(net.string(), e);
 
     Value value[2];
     for (int k : {0, 1}) value[k]["value"] = k;
@@ -314,14 +232,14 @@ TEST(GoldenTypes, TheBilinearCoonsPatchByOtherTypes) {
     }
     s["f"] = generalized.curves(list(d["d0"], d["d1"]));
     s["g"] = generalized.curves(list(d["c0"], d["c1"]));
-    expect_eval(generalized.string(), e);
+    expect_golden(generalized.string(), e);
 
     Value& g = gordon.surface();
     g["type"] = "gordon";
     g["u_curves"] = gordon.curves(list(d["c0"], d["c1"]));
     g["v_curves"] = gordon.curves(list(d["d0"], d["d1"]));
     g["u_nodes"] = g["v_nodes"] = list(0, 1);
-    expect_eval(gordon.string(), e);
+    expect_golden(gordon.string(), e);
 }
 
 INSTANTIATE_TEST_SUITE_P(Surface, GoldenProgram, ::testing::ValuesIn(golden()["surfaces"].getMemberNames()), [](const auto& info) {

@@ -1,6 +1,6 @@
 // samples.h -- one row for each type of curve and of surface: what the law tests are instantiated over.
 //
-// A new type joins every law by one row in samples.cpp. A row makes a random instance from a Random; the same seed
+// A new type joins every law by one row in samples_*.cpp. A row makes a random instance from a Random; the same seed
 // makes the same instance, and a Random with an offset makes the same instance elsewhere in space.
 #pragma once
 #include <cstdint>

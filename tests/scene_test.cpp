@@ -7,7 +7,6 @@
 
 #include "error.h"
 #include "json.h"
-#include "registry.h"
 #include "run_program.h"
 #include "scene_values.h"
 
@@ -191,20 +190,6 @@ TEST(Scene, ChangedBytesAreReadOrRefused) {
         }
         must_load_or_throw(changed);
     }
-}
-
-TEST(Scene, TheSchemaKnowsEveryTypeAndKey) {
-    const std::string schema = test::read_all(test::source_folder() + "/scenes/scene.schema.json");
-    const auto check = [&](const auto& types) {
-        for (const auto& t : types) {
-            const bool known = schema.find(std::string("\"const\": \"") + t.name + "\"") != std::string::npos;
-            EXPECT_TRUE(known || !t.build) << t.name;
-            for (const auto& key : t.keys)
-                EXPECT_TRUE(key == "normals" || schema.find("\"" + key + "\": {") != std::string::npos) << t.name << " " << key;
-        }
-    };
-    check(curve_types());
-    check(surface_types());
 }
 
 TEST(Scene, PointsOfABezierTriangleComeInRowsOrInOneList) {

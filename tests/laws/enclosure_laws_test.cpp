@@ -1,4 +1,4 @@
-// enclosure_laws_test.cpp -- what is proved over a box holds at every point of it. New types: one row in samples.cpp.
+// enclosure_laws_test.cpp -- what is proved over a box holds at every point of it. New types: one row in samples_*.cpp.
 //
 // Jets in doubles are rounded, so they may leave an enclosure by rounding (kSlack); where the exact value can be had in
 // quadruple precision the law is checked without any slack.

@@ -8,6 +8,7 @@
 #include "curves/isocurve.h"
 #include "curves/modify.h"
 #include "patches/control_net.h"
+#include "patches/gordon.h"
 #include "patches/ruled.h"
 #include "patches/tensor_bezier.h"
 #include "patches/tensor_hermite.h"
@@ -60,6 +61,16 @@ TEST(Identity, CoonsReproducesWhatIsLinearInOneParameter) {
             const CoonsCurves border{make_bezier(c0), make_bezier(c1), make_bezier(p.front()), make_bezier(p.back())};
             expect_same(make_coons(border), make_bezier_patch(p));
         }
+    });
+}
+
+TEST(Identity, GordonWithHatsReproducesTranslationalSurfaces) {
+    each_seed([](Random& r) {
+        const Point o = r.point();
+        const Curve c = random_cubic(r, o, r.point({3, 0, 0})), d = random_cubic(r, o, r.point({0, 3, 0}));
+        const auto moved = [&](const Curve& x, const Point& to) { return transformed(x, Transform::translate(to - o)); };
+        const GordonNetwork lines{{c, moved(c, d(0.3)), moved(c, d(1))}, {0, 0.3, 1}, {d, moved(d, c(0.6)), moved(d, c(1))}, {0, 0.6, 1}};
+        expect_same(make_gordon(lines, GordonBlend::hermite), make_translational(c, d));
     });
 }
 

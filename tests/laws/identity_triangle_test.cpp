@@ -192,7 +192,9 @@ TEST(Identity, PrecisionOfTheC0Surfaces) {
         const auto gap = [](Net& b, const Make& make) { return difference(make(b.edges()), b.patch()); };
         const Make linear[] = {[](const auto& e) { return make_three_curves(e); },
                                [](const auto& e) { return make_bbg(e, {Kind::convex}); },
-                               [](const auto& e) { return make_side_vertex(e, Function::polynomial({0, 1})); }},
+                               [](const auto& e) { return make_side_vertex(e, Function::polynomial({0, 1})); },
+                               [](const auto& e) { return make_side_vertex(e, Function::polynomial({0, 0, 3, -2})); },
+                               [](const auto& e) { return make_side_vertex(e, Function::polynomial({0, 0, 0, 2, -1})); }},
                    quadratic[] = {[](const auto& e) { return make_bbg(e, {Kind::boolean, 1, 2}); },
                                   [](const auto& e) { return make_bbg(e, {Kind::boolean, 3, 2}); },
                                   [](const auto& e) { return make_bbg(e, {Kind::symmetric}); },

@@ -4,14 +4,19 @@
 
 #include <numbers>
 
+#include "curves/bezier.h"
 #include "patches/bbg.h"
+#include "patches/control_net.h"
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
 #include "patches/gordon.h"
+#include "patches/lagrange.h"
 #include "patches/nielson.h"
+#include "patches/ruled.h"
 #include "patches/side_vertex.h"
 #include "patches/tensor_hermite.h"
 #include "patches/three_curves.h"
+#include "patches/translational.h"
 #include "samples.h"
 #include "scalar/elementary.h"
 
@@ -76,6 +81,20 @@ struct Cell {
         const std::vector<double> t{0, 0.5, 1};
         return {{along_u(0), along_u(0.5), along_u(1)}, t, {along_v(0), along_v(0.5), along_v(1)}, t};
     }
+    /// Cubics with the ends and end tangents of the boundary curves.
+    ControlFrame control() const {
+        const auto cubic = [&](const Vec2& from, const Vec2& to) {
+            const Point p = smooth(from), q = smooth(to), a = smooth(from, {to - from}), b = smooth(to, {to - from});
+            return SplineCurve{3, {0, 0, 0, 0, 1, 1, 1, 1}, {p, p + a / 3.0, q - b / 3.0, q}};
+        };
+        return {cubic(at(0, 0), at(1, 0)), cubic(at(0, 1), at(1, 1)), cubic(at(0, 0), at(0, 1)), cubic(at(1, 0), at(1, 1))};
+    }
+    Patch lagrange(int n) const {
+        std::vector<Curve> curves;
+        std::vector<double> nodes;
+        for (int k = 0; k <= n; ++k) nodes.push_back(double(k) / n), curves.push_back(along_u(nodes.back()));
+        return make_lagrange(curves, nodes);
+    }
     Vec2 vertex(int k) const { return k % 3 == 0 ? o : k % 3 == 1 ? o + U : o + V; }
     std::array<Curve, 3> edges() const { return {edge(0), edge(1), edge(2)}; }
     /// D_k along E_k: in the direction of the median, from the middle of the edge to the vertex opposite.
@@ -97,14 +116,22 @@ using Kind = BbgForm::Kind;
 const Row kRows[] = {
     {"Bilinear", 4, [](const Cell& c) { return make_coons(c.frame()); }},
     {"PartiallyBicubic", 2, [](const Cell& c) { return make_coons(c.frame(), cubic_blend()); }},
+    {"CoonsWithASquare", 2, [](const Cell& c) { return make_coons(c.frame(), Function::polynomial({0, 0, 1})); }},
+    {"TranslationalBlend", 4, [](const Cell& c) { return make_translational_blend(c.frame()); }},
+    {"ControlNet", 4, [](const Cell& c) { return make_control_net(c.control()); }},
+    {"Ruled", 2, [](const Cell& c) { return make_ruled(c.along_u(0), c.along_u(1)); }},
+    {"Lagrange3", 3, [](const Cell& c) { return c.lagrange(2); }},
+    {"Lagrange4", 4, [](const Cell& c) { return c.lagrange(3); }},
     {"HermiteCoons", 8, [](const Cell& c) { return make_coons_hermite(c.hermite()); }},
     {"GregoryCompatible", 8, [](const Cell& c) { return make_coons_hermite(c.hermite(), Twist::gregory); }},
     {"TensorHermite", 4, [](const Cell& c) { return make_tensor_hermite(c.nodes(), c.nodes({c.U}), c.nodes({c.V}), c.nodes({c.U, c.V})); }},
     {"TensorHermiteNoTwist", 2, [](const Cell& c) { return make_tensor_hermite(c.nodes(), c.nodes({c.U}), c.nodes({c.V})); }},
     {"Gordon3x3", 6, [](const Cell& c) { return make_gordon(c.gordon()); }},
+    {"GordonHats", 2, [](const Cell& c) { return make_gordon(c.gordon(), GordonBlend::hermite); }},
     {"SideVertexT", 2, [](const Cell& c) { return make_side_vertex(c.edges(), Function::polynomial({0, 1})); }},
     {"SideVertexT2", 3, [](const Cell& c) { return make_side_vertex(c.edges(), Function::polynomial({0, 0, 1})); }},
     {"SideVertexDelta2T3T4", 2, [](const Cell& c) { return make_side_vertex(c.edges(), Function::polynomial({0, 0, 0, 2, -1})); }},
+    {"SideVertexDeltaSmooth", 2, [](const Cell& c) { return make_side_vertex(c.edges(), cubic_blend()); }},
     {"ThreeCurves", 2, [](const Cell& c) { return make_three_curves(c.edges()); }},
     {"BbgConvex", 2, [](const Cell& c) { return make_bbg(c.edges(), {Kind::convex}); }},
     {"BbgBoolean", 3, [](const Cell& c) { return make_bbg(c.edges(), {Kind::boolean, 1, 2}); }},
