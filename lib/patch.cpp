@@ -133,7 +133,7 @@ void keep_agreed(const Patch& patch, const PointJet& other, PointJet& jet) {
         return j[axis].c[k] * std::pow(r.u1 - r.u0, a) * std::pow(r.v1 - r.v0, b);
     };
     double size[3] = {0, 0, 0}, all = 0;  // by order
-    for (const PointJet* j : {&jet, &other})
+    for (const PointJet* j : {static_cast<const PointJet*>(&jet), &other})
         for (int axis = 0; axis < 3; ++axis)
             for (int k = 0; k < jet.x.size; ++k) {
                 const double x = std::fabs(scaled(*j, axis, k));

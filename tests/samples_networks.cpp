@@ -87,7 +87,7 @@ PatchSample generalized_hats(Random& r) {
 
 /// Nodes inside the domain of the curves, which are no polynomials.
 PatchSample gordon_inside(Random& r, GordonBlend blend) {
-    const Patch p = rational_bezier_patch(r).patch;
+    const Patch p = make_bezier_patch(random_net(r, 4, 3), random_weights(r, 4, 3));
     GordonNetwork net{{}, {0.25, 0.75}, {}, {0.2, 0.5, 0.9}};
     for (const double v : net.v_nodes) net.u_curves.push_back(make_isocurve(p, Along::u, v));
     for (const double u : net.u_nodes) net.v_curves.push_back(make_isocurve(p, Along::v, u));

@@ -20,6 +20,11 @@ def rational_edges():
             bezier([A, [2.1, 1, 1], [1.5, 2.2, -0.5], [0.5, 2.4, 1], B], [1, 2, 0.7, 1.3, 0.5])]
 
 
+def heavy_edges(weights):
+    """The same points under weights that differ by orders of magnitude."""
+    return [bezier([[digits(x) for x in p] for p in e.scene["points"]], w) for e, w in zip(rational_edges(), weights)]
+
+
 def between(p, q, bump):
     """(1 - t) p + t q + t (1 - t) bump, in coordinates."""
     return ["(1 - t)*(%s) + t*(%s) + t*(1 - t)*(%s)" % (digits(a), digits(b), c) for a, b, c in zip(p, q, bump)]
@@ -211,6 +216,14 @@ def add():
             for form in ("delta", "seed"):
                 if (name == "rational") == (form == "seed"):
                     add_case("side_vertex", {"H": "sin(pi*t/2)^2", "form": form, "part": part}, side_vertex(E, function("sin(pi*t/2)^2"), form, part))
+    for name, weights in (("weights_20", ([1, 0.05, 20, 1], [0.05, 20, 0.05], [1, 20, 0.05, 5, 1])),
+                          ("weights_1000", ([1, 1e3, 1e-3, 1], [1e-3, 1, 1e3], [1, 1e3, 1e-3, 10, 1]))):
+        E = heavy_edges(weights)
+        cross = rational_cross(E)
+        for method, keys, f in (("three_curves", {}, three_curves(E)), ("bbg_convex", {}, bbg(E, "convex")), ("bbg_symmetric", {}, bbg(E, "symmetric")),
+                                ("bbg_boolean", {}, bbg(E, "12")), ("bbg_c1", {"cross": cross}, bbg_c1(E, cross, 0)),
+                                ("side_vertex", {}, side_vertex(E, function("t^2"), "delta", "sum"))):
+            case(method + "_" + name, {"type": "coons_triangle", "method": method, "edges": E} | keys, of_triangle(f), POINTS)
     for name, (E, N) in (("sphere", on_sphere()), ("graph", on_graph())):
         for part in (0, 1, 2, 3):
             key = {"part": "T%d" % part} if part else {}
