@@ -117,41 +117,6 @@ std::optional<Point> unit_normal(const Patch& patch, const PointJet& jet, double
     return limit;
 }
 
-namespace {
-
-/// t, and just before it when t is one of the breaks: a parameter in every cell that meets there.
-std::vector<double> sides(const std::vector<double>& breaks, double t) {
-    if (std::find(breaks.begin(), breaks.end(), t) == breaks.end()) return {t};
-    return {t, std::nextafter(t, -std::numeric_limits<double>::infinity())};
-}
-
-/// Derivatives of `jet` that `other`, of a neighbouring cell, does not share become NaN.
-void keep_agreed(const Patch& patch, const PointJet& other, PointJet& jet) {
-    const Rect r = patch.rect();
-    const auto scaled = [&](const PointJet& j, int axis, int k) {
-        const auto [a, b] = j.x.powers[k];
-        return j[axis].c[k] * std::pow(r.u1 - r.u0, a) * std::pow(r.v1 - r.v0, b);
-    };
-    double size[3] = {0, 0, 0}, all = 0;  // by order
-    for (const PointJet* j : {static_cast<const PointJet*>(&jet), &other})
-        for (int axis = 0; axis < 3; ++axis)
-            for (int k = 0; k < jet.x.size; ++k) {
-                const double x = std::fabs(scaled(*j, axis, k));
-                double& most = size[jet.x.powers[k].first + jet.x.powers[k].second];
-                if (std::isfinite(x)) most = std::max(most, x), all = std::max(all, x);
-            }
-    for (int k = 1; k < jet.x.size; ++k) {
-        const int order = jet.x.powers[k].first + jet.x.powers[k].second;
-        bool same = true;
-        for (int axis = 0; axis < 3; ++axis)
-            same = same && std::fabs(scaled(jet, axis, k) - scaled(other, axis, k)) <= 1e-9 * size[order] + 1e-12 * all;
-        if (!same)
-            for (int axis = 0; axis < 3; ++axis) jet[axis].c[k] = std::numeric_limits<double>::quiet_NaN();
-    }
-}
-
-}  // namespace
-
 SurfacePoint evaluate(const Patch& patch, double u, double v) {
     const Rect r = patch.rect();
     const bool inside = patch.domain() == Domain::quad ? u >= r.u0 && u <= r.u1 && v >= r.v0 && v <= r.v1 : u >= 0 && v >= 0 && u + v <= 1 + 4e-16;
@@ -159,16 +124,7 @@ SurfacePoint evaluate(const Patch& patch, double u, double v) {
         throw_input("found (" + to_text(u) + ", " + to_text(v) + "), expected a point of the domain " +
                     (patch.domain() == Domain::quad ? "[" + to_text(r.u0) + ", " + to_text(r.u1) + "] x [" + to_text(r.v0) + ", " + to_text(r.v1) + "]"
                                                     : std::string("u >= 0, v >= 0, u + v <= 1")));
-    PointJet jet = patch.jet(u, v);
-    std::optional<Point> normal = unit_normal(patch, jet, u, v);
-    for (const double x : sides(patch.breaks_u(), u))
-        for (const double y : sides(patch.breaks_v(), v)) {
-            if (x == u && y == v) continue;
-            const PointJet other = patch.jet(x, y);
-            keep_agreed(patch, other, jet);
-            const auto there = unit_normal(patch, other, x, y);
-            if (!normal || !there || length(*normal - *there) > 1e-9) normal.reset();
-        }
+    const PointJet jet = patch.jet(u, v);
     SurfacePoint s;
     s.position = first_order(jet, 0, 0);
     s.du = if_finite(first_order(jet, 1, 0));
@@ -176,7 +132,7 @@ SurfacePoint evaluate(const Patch& patch, double u, double v) {
     s.duu = if_finite(2.0 * first_order(jet, 2, 0));
     s.duv = if_finite(first_order(jet, 1, 1));
     s.dvv = if_finite(2.0 * first_order(jet, 0, 2));
-    s.normal = normal;
+    s.normal = unit_normal(patch, jet, u, v);
     if (!s.du || !s.dv || !s.duu || !s.duv || !s.dvv || !s.normal || !ScaledDerivatives(patch, jet).regular()) return s;
     const double E = dot(*s.du, *s.du), F = dot(*s.du, *s.dv), G = dot(*s.dv, *s.dv);
     const double L = dot(*s.duu, *s.normal), M = dot(*s.duv, *s.normal), N = dot(*s.dvv, *s.normal);

@@ -87,8 +87,8 @@ private:
     std::shared_ptr<const Concept> impl_;
 };
 
-/// First derivatives, second derivatives and curvature as a user reads them; what does not exist is empty, also where the cells on
-/// both sides of a break disagree.
+/// First derivatives, second derivatives and curvature as a user reads them; what does not exist is empty. On a
+/// break, where derivatives may jump, those of the cell on its right (greater parameters).
 struct SurfacePoint {
     Point position;
     std::optional<Point> du, dv, duu, duv, dvv;
