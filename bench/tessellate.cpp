@@ -40,7 +40,7 @@ std::vector<Case> tessellation_cases() {
         const char *scene, *title;
     } const surfaces[] = {{"teapot", "teapot, 32 bicubic patches"},
                           {"sphere", "sphere, 8 rational octants"},
-                          {"composite_coons", "2x2 Coons network"},
+                          {"s002_fig4", "2x2 Coons network"},
                           {"side_vertex", "side-vertex triangle"}};
     std::vector<Case> cases;
     for (const auto& [scene, title] : surfaces) {

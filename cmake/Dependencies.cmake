@@ -1,5 +1,5 @@
 # Finds the libraries, around what is wrong with some of their CMake files. Targets afterwards: TBB::tbb,
-# OpenSubdiv::osdCPU, embree, JsonCpp::JsonCpp, OpenImageIO::OpenImageIO.
+# OpenSubdiv::osdCPU, embree, JsonCpp::JsonCpp, OpenImageIO::OpenImageIO, PkgConfig::PANGOCAIRO.
 
 # Ends with the names under which systems ship what was not found: the row of packages.txt.
 function(isoparm_not_found what debian_package)
@@ -44,6 +44,15 @@ if(NOT TARGET JsonCpp::JsonCpp)
     else()
         isoparm_not_found(JsonCpp libjsoncpp-dev)
     endif()
+endif()
+
+find_package(PkgConfig QUIET)
+if(NOT PKG_CONFIG_FOUND)
+    isoparm_not_found(pkg-config pkg-config)
+endif()
+pkg_check_modules(PANGOCAIRO QUIET IMPORTED_TARGET pangocairo)
+if(NOT TARGET PkgConfig::PANGOCAIRO)
+    isoparm_not_found("Pango with Cairo" libpango1.0-dev)
 endif()
 
 # Debian's OpenImageIO ends the configuration with a cryptic error if its programs, another package, are not there.

@@ -120,13 +120,23 @@ TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, c
     const double smooth = proved(second), rough = std::min(proved(first), proved(zeroth));
     result.parametric = std::min(smooth, rough);
     std::array<double, 3> score = smooth <= rough ? curved : steep;
-    if (!useful(score))
-        for (int k = 0; k < 3; ++k) score[k] = dot(points[(k + 1) % 3] - points[k], points[(k + 1) % 3] - points[k]);
+    if (!useful(score)) {
+        // The edge that is longest in space, of those that are all but longest in the domain: bisecting shorter ones makes needles whose
+        // boxes never shrink.
+        const Rect r = patch.rect();
+        std::array<double, 3> length;
+        for (int k = 0; k < 3; ++k) length[k] = std::hypot(mid(edges[k].du) / (r.u1 - r.u0), mid(edges[k].dv) / (r.v1 - r.v0));
+        const double longest = std::max({length[0], length[1], length[2]});
+        for (int k = 0; k < 3; ++k) {
+            const Point d = points[(k + 1) % 3] - points[k];
+            score[k] = length[k] < 0.9 * longest ? -1 : dot(d, d);
+        }
+    }
     // Where two edges are all but equal, the longer one in the domain: the choice must not hang on rounding.
     const auto size = [&](int k) { return edges[k].uu + edges[k].vv; };
     for (int k = 1; k < 3; ++k) {
         const double best = score[result.worst_edge];
-        if (score[k] > best * (1 + 1e-9) || (score[k] >= best * (1 - 1e-9) && size(k) > size(result.worst_edge) * (1 + 1e-9))) result.worst_edge = k;
+        if (score[k] > best + 1e-9 * std::fabs(best) || (score[k] >= best - 1e-9 * std::fabs(best) && size(k) > size(result.worst_edge) * (1 + 1e-9))) result.worst_edge = k;
     }
     return result;
 }

@@ -18,7 +18,7 @@ struct Reparametrized {
     }
     template <class S> auto operator()(const S& t) const {
         const double scale = (curve.end() - curve.begin()) / (end - begin);
-        return curve((t - begin) * scale + curve.begin());
+        return curve(kept_in((t - begin) * scale + curve.begin(), curve.begin(), curve.end()));
     }
     Vec3<Polynomial> operator()(const Polynomial& t) const {
         const double scale = (curve.end() - curve.begin()) / (end - begin);
@@ -44,6 +44,12 @@ std::vector<Break> breaks_of(std::span<const Curve> curves) {
         else merged.back().continuity = std::min(merged.back().continuity, b.continuity);
     }
     return merged;
+}
+
+std::vector<double> break_parameters(const std::vector<Curve>& curves) {
+    std::vector<double> list;
+    for (const Break& b : breaks_of(curves)) list.push_back(b.t);
+    return list;
 }
 
 Curve reparametrized(const Curve& c, double begin, double end) {

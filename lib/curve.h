@@ -33,7 +33,7 @@ public:
         virtual void taylor(double t, int order, Vec3<double>* out) const = 0;
         virtual void taylor(const Pack& t, int order, Vec3<Pack>* out) const = 0;
         virtual void taylor(const Interval& t, int order, Vec3<Interval>* out) const = 0;
-        /// The exact polynomial, where the curve is one over the range of t.
+        /// The exact polynomial, where the curve is one over the range of t (or everywhere on its domain: then t may leave it).
         virtual Vec3<Polynomial> exact(const Polynomial& t) const;
         /// Its exact (rational) Bezier pieces, where it has them.
         virtual const PiecewiseBezier* bezier() const { return nullptr; }
@@ -97,6 +97,7 @@ template <class F> Curve make_curve(F f) { return Curve(std::make_shared<CurveMo
 inline constexpr double break_rounding = 1e-13;
 /// The breaks of curves over the same domain, in order, each with the least continuity that any of them has there.
 std::vector<Break> breaks_of(std::span<const Curve> curves);
+std::vector<double> break_parameters(const std::vector<Curve>& curves);
 
 /// The same curve run over [begin, end] (affinely).
 Curve reparametrized(const Curve& c, double begin, double end);

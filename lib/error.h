@@ -24,16 +24,18 @@ private:
     ErrorKind kind_;
 };
 
-/// Data that does not fit together: which condition, the gap that was measured, and the tolerance it had to stay below.
+/// Data that does not fit together: which condition, the gap that was measured, and the tolerance it had to stay below; `advice`, if any,
+/// tells what would repair it.
 class IncompatibleError : public Error {
 public:
-    IncompatibleError(const std::string& condition, double gap, double tolerance);
+    IncompatibleError(const std::string& condition, double gap, double tolerance, const std::string& advice = "");
     const std::string& condition() const { return condition_; }
     double gap() const { return gap_; }
     double tolerance() const { return tolerance_; }
+    const std::string& advice() const { return advice_; }
 
 private:
-    std::string condition_;
+    std::string condition_, advice_;
     double gap_, tolerance_;
 };
 

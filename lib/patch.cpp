@@ -1,5 +1,6 @@
 #include "patch.h"
 
+#include <limits>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -52,6 +52,8 @@ public:
         virtual PointFrame frame(double u, double v) const = 0;
         /// n positions; bit for bit the same as point().
         virtual void points(std::size_t n, const double* u, const double* v, Point* out) const = 0;
+        /// n frames; bit for bit the same as frame().
+        virtual void frames(std::size_t n, const double* u, const double* v, PointFrame* out) const = 0;
         virtual Enclosure enclose(const Box& box) const = 0;
         /// Encloses every position over the box; cheaper than enclose().
         virtual Vec3<Interval> enclose_points(const Box& box) const = 0;
@@ -69,6 +71,7 @@ public:
     PointJet jet(double u, double v) const { return impl_->jet(u, v); }
     PointFrame frame(double u, double v) const { return impl_->frame(u, v); }
     void points(std::size_t n, const double* u, const double* v, Point* out) const { impl_->points(n, u, v, out); }
+    void frames(std::size_t n, const double* u, const double* v, PointFrame* out) const { impl_->frames(n, u, v, out); }
     Enclosure enclose(const Box& box) const { return impl_->enclose(box); }
     Vec3<Interval> enclose_points(const Box& box) const { return impl_->enclose_points(box); }
     /// Encloses the exact position at (u,v).
@@ -87,7 +90,8 @@ private:
     std::shared_ptr<const Concept> impl_;
 };
 
-/// First derivatives, second derivatives and curvature as a user reads them; what does not exist is empty.
+/// First derivatives, second derivatives and curvature as a user reads them; what does not exist is empty. On a
+/// break, where derivatives may jump, those of the cell on its right (greater parameters).
 struct SurfacePoint {
     Point position;
     std::optional<Point> du, dv, duu, duv, dvv;

@@ -43,15 +43,21 @@ public:
     PointFrame frame(double u, double v) const override { return run<1>(u, v); }
 
     void points(std::size_t n, const double* u, const double* v, Point* out) const override {
-        for (std::size_t k = 0; k < n; k += Pack::lanes) {
-            const std::size_t count = std::min<std::size_t>(Pack::lanes, n - k);
-            if (count == Pack::lanes && one_cell(u + k, v + k)) {
-                const auto p = run<0>(Pack::load(u + k), Pack::load(v + k));
-                for (std::size_t i = 0; i < count; ++i) out[k + i] = {p.x.c[0][i], p.y.c[0][i], p.z.c[0][i]};
-            } else {
-                for (std::size_t i = k; i < k + count; ++i) out[i] = point(u[i], v[i]);
-            }
-        }
+        in_packs<0>(n, u, v, [&](std::size_t k, const auto& p, int lane) { out[k] = {p.x.c[0][lane], p.y.c[0][lane], p.z.c[0][lane]}; },
+                    [&](std::size_t k) { out[k] = point(u[k], v[k]); });
+    }
+    void frames(std::size_t n, const double* u, const double* v, PointFrame* out) const override {
+        in_packs<1>(n, u, v,
+                    [&](std::size_t k, const auto& p, int lane) {
+                        bool finite = true;
+                        for (int axis = 0; axis < 3; ++axis)
+                            for (int c = 0; c < out[k].x.size; ++c) {
+                                out[k][axis].c[c] = p[axis].c[c][lane];
+                                finite = finite && std::isfinite(out[k][axis].c[c]);
+                            }
+                        if (!finite) out[k] = frame(u[k], v[k]);  // at a singular corner, whose limits packs do not have
+                    },
+                    [&](std::size_t k) { out[k] = frame(u[k], v[k]); });
     }
 
     Enclosure enclose(const Box& box) const override {
@@ -99,9 +105,24 @@ private:
         while (first + 2 < edges.size() && hi > edges[first + 1]) ++first;
         return first;
     }
-    bool one_cell(const double* u, const double* v) const {
+    /// Runs the formula on packs, the last one filled up with copies: store(k, jets, lane) for each point k. Points of different
+    /// cells do not share a pack: then alone(k).
+    template <int N, class Store, class Alone> void in_packs(std::size_t n, const double* u, const double* v, Store store, Alone alone) const {
+        for (std::size_t k = 0; k < n; k += Pack::lanes) {
+            const int count = static_cast<int>(std::min<std::size_t>(Pack::lanes, n - k));
+            if (count == 1 || !one_cell(u + k, v + k, count)) {
+                for (int i = 0; i < count; ++i) alone(k + i);
+                continue;
+            }
+            double x[Pack::lanes], y[Pack::lanes];
+            for (int i = 0; i < Pack::lanes; ++i) x[i] = u[k + std::min(i, count - 1)], y[i] = v[k + std::min(i, count - 1)];
+            const auto p = run<N>(Pack::load(x), Pack::load(y));
+            for (int i = 0; i < count; ++i) store(k + i, p, i);
+        }
+    }
+    bool one_cell(const double* u, const double* v, int count) const {
         if (breaks_u_.empty() && breaks_v_.empty()) return true;
-        for (int i = 1; i < Pack::lanes; ++i)
+        for (int i = 1; i < count; ++i)
             if (cell(breaks_u_, u[i]) != cell(breaks_u_, u[0]) || cell(breaks_v_, v[i]) != cell(breaks_v_, v[0])) return false;
         return true;
     }

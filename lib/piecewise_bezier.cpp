@@ -8,16 +8,18 @@
 namespace isoparm {
 namespace {
 
-/// Taylor coefficients in s of the Bezier polynomial with these coordinates, by de Casteljau's triangle.
-template <class T> void bezier_taylor(const double* coordinates, int stride, int degree, const T& s, int order, T* out) {
-    std::array<T, max_degree + 1> b;
-    for (int i = 0; i <= degree; ++i) b[i] = T(coordinates[i * stride]);
+/// Taylor coefficients in s of the Bezier polynomial with these coordinates, by de Casteljau's triangle. Fixed: the degree when the
+/// compiler is to know it, or 0.
+template <int Fixed, class T> void de_casteljau(const double* coordinates, int given, const T& s, int order, T* out) {
+    const int degree = Fixed > 0 ? Fixed : given;
+    T b[(Fixed > 0 ? Fixed : max_degree) + 1];
+    for (int i = 0; i <= degree; ++i) b[i] = T(coordinates[i]);
     const T r = T(1.0) - s;
     for (int level = 0;; ++level) {
         const int k = degree - level;  // k + 1 points are left: their k-th difference is the k-th derivative
         if (k <= order) {
-            std::array<T, max_degree + 1> d;
-            std::copy(b.begin(), b.begin() + k + 1, d.begin());
+            T d[(Fixed > 0 ? Fixed : max_degree) + 1];
+            std::copy(b, b + k + 1, d);
             for (int m = 0; m < k; ++m)
                 for (int i = 0; i < k - m; ++i) d[i] = d[i + 1] - d[i];
             out[k] = k == 0 ? d[0] : d[0] * T(binomial(degree, k));
@@ -27,29 +29,39 @@ template <class T> void bezier_taylor(const double* coordinates, int stride, int
     }
     for (int k = degree + 1; k <= order; ++k) out[k] = T(0.0);
 }
+template <class T> void bezier_taylor(const double* coordinates, int degree, const T& s, int order, T* out) {
+    switch (degree) {
+        case 1: return de_casteljau<1>(coordinates, degree, s, order, out);
+        case 2: return de_casteljau<2>(coordinates, degree, s, order, out);
+        case 3: return de_casteljau<3>(coordinates, degree, s, order, out);
+        case 4: return de_casteljau<4>(coordinates, degree, s, order, out);
+        case 5: return de_casteljau<5>(coordinates, degree, s, order, out);
+        default: return de_casteljau<0>(coordinates, degree, s, order, out);
+    }
+}
 
 /// The same over a wide interval: all coefficients at the middle, then the exact expansion about it.
-void bezier_taylor(const double* coordinates, int stride, int degree, const Interval& s, int order, Interval* out) {
+void bezier_taylor(const double* coordinates, int degree, const Interval& s, int order, Interval* out) {
     const double m = mid(s);
     std::array<Interval, max_degree + 1> a;
-    bezier_taylor<Interval>(coordinates, stride, degree, Interval(m), degree, a.data());
+    bezier_taylor<Interval>(coordinates, degree, Interval(m), degree, a.data());
     shift_taylor(a.data(), degree, s - Interval(m), order, out);
 }
 
+/// For numbers and packs: order <= 3.
 template <class T> void piece_taylor(const BezierPiece& piece, const T& t, int order, Vec3<T>* out) {
     const int n = piece.degree();
+    const bool unit = piece.begin == 0 && piece.end == 1, rational = !piece.weights.empty();
     const T h = T(piece.end) - T(piece.begin);
-    const T s = (t - T(piece.begin)) / h;
-    constexpr int most = max_degree + 1;
-    T c[3][most], w[most];
+    const T s = unit ? t : (t - T(piece.begin)) / h;
+    T c[3][4], w[4];
     double weighted[max_degree + 1];
-    const bool rational = !piece.weights.empty();
     for (int axis = 0; axis < 3; ++axis) {
         for (int i = 0; i <= n; ++i) weighted[i] = piece.points[i][axis] * (rational ? piece.weights[i] : 1.0);
-        bezier_taylor(weighted, 1, n, s, order, c[axis]);
+        bezier_taylor(weighted, n, s, order, c[axis]);
     }
     if (rational) {  // x = N / w by the quotient recurrence
-        bezier_taylor(piece.weights.data(), 1, n, s, order, w);
+        bezier_taylor(piece.weights.data(), n, s, order, w);
         for (auto& x : c)
             for (int k = 0; k <= order; ++k) {
                 for (int l = 0; l < k; ++l) x[k] = x[k] - x[l] * w[k - l];
@@ -58,7 +70,9 @@ template <class T> void piece_taylor(const BezierPiece& piece, const T& t, int o
     }
     T scale(1.0);
     for (int k = 0; k <= order; ++k) {
-        out[k] = {c[0][k] / scale, c[1][k] / scale, c[2][k] / scale};
+        out[k] = {c[0][k], c[1][k], c[2][k]};
+        if (unit) continue;
+        if (k > 0) out[k] = out[k] / scale;
         scale = scale * h;
     }
 }
@@ -80,7 +94,7 @@ template <> void piece_taylor(const BezierPiece& piece, const Interval& t, int o
             high[i] = rad(x);
             exact = exact && high[i] == 0;
         }
-        bezier_taylor(low, 1, n, s, order, c[axis]);
+        bezier_taylor(low, n, s, order, c[axis]);
         if (exact) continue;
         // The products were rounded: each Bezier coefficient is off by at most high[i], so each Taylor coefficient of
         // order k by at most binomial(n,k) 2^k times the largest of them.
@@ -93,7 +107,7 @@ template <> void piece_taylor(const BezierPiece& piece, const Interval& t, int o
         }
     }
     if (rational) {
-        bezier_taylor(piece.weights.data(), 1, n, s, order, w);
+        bezier_taylor(piece.weights.data(), n, s, order, w);
         // Convex hull: over a wide interval the expansions may overshoot, even below 0 in the denominator.
         const auto [lightest, heaviest] = std::minmax_element(piece.weights.begin(), piece.weights.end());
         w[0] = intersection(w[0], {*lightest, *heaviest});
@@ -192,8 +206,10 @@ Vec3<Polynomial> PiecewiseBezier::exact(const Polynomial& t) const {
     const Interval range = t.range();
     const auto& piece = pieces_[piece_at(mid(range))];
     const double slack = 1e-9 * (piece.end - piece.begin);
-    if (!piece.weights.empty() || range.lo < piece.begin - slack || range.hi > piece.end + slack) return none;
-    const double m = mid(range);
+    // A lone piece is the same polynomial everywhere: on a triangle w = 1-u-v is one of a square, where it leaves [0,1].
+    const bool inside = range.lo >= piece.begin - slack && range.hi <= piece.end + slack;
+    if (!piece.weights.empty() || !(inside || pieces_.size() == 1)) return none;
+    const double m = std::clamp(mid(range), piece.begin, piece.end);
     std::array<Vec3<Interval>, max_degree + 1> a;
     piece_taylor(piece, Interval(m), piece.degree(), a.data());
     const Polynomial step = t - Polynomial(m);

@@ -15,6 +15,7 @@ constexpr std::size_t kMaxPatches = 100'000;
 void append(ControlNet& net, const ControlNet& more) {
     const int first = static_cast<int>(net.points.size());
     net.points.insert(net.points.end(), more.points.begin(), more.points.end());
+    net.indices.insert(net.indices.end(), more.indices.begin(), more.indices.end());
     for (const auto& rod : more.rods) net.rods.push_back({rod[0] + first, rod[1] + first});
 }
 }  // namespace

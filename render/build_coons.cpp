@@ -1,9 +1,12 @@
-// build_coons.cpp -- surfaces that a scene file gives by curves: Coons patches, networks, side-vertex triangles.
+// build_coons.cpp -- surfaces that a scene file gives by curves to interpolate: boolean sums over a rectangle.
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
+#include "patches/generalized_coons.h"
+#include "patches/gordon.h"
+#include "patches/lagrange.h"
 #include "patches/network.h"
-#include "patches/side_vertex.h"
 #include "registry.h"
+#include "repair.h"
 
 namespace isoparm {
 
@@ -15,25 +18,17 @@ Part part_of(const Json& j, const SceneValues& values) {
     return part ? parts[values.word(*part, {"sum", "P1", "P2", "P1P2"})] : Part::sum;
 }
 
-/// For a surface whose parts cannot be drawn yet.
-void whole_only(const Json& j, const SceneValues& values, const std::vector<std::string>& parts) {
-    const auto part = j.find("part");
-    if (part && values.word(*part, parts) != 0) part->expected("\"sum\": the other parts are known but not built yet here");
-}
-
 Twist twist_of(const Json& j, const SceneValues& values, Twist otherwise) {
     static constexpr Twist twists[] = {Twist::compatible, Twist::gregory, Twist::average, Twist::zero};
     const auto twist = j.find("twist");
     return twist ? twists[values.word(*twist, {"compatible", "gregory", "average", "zero"})] : otherwise;
 }
 
-Function formula_of(const Json& j, const SceneValues& values) { return make_formula(values.formula(j)); }
-
 std::optional<Function> blend_of(const Json& j, const SceneValues& values) {
     const auto blend = j.find("blend");
     if (!blend || (blend->is(Json::Kind::string) && blend->string() == "linear")) return {};
     if (blend->is(Json::Kind::string) && blend->string() == "cubic") return cubic_blend();
-    return formula_of(*blend, values);
+    return values.function(*blend, 0, 1);
 }
 
 std::array<Curve, 4> four_curves(const Json& j, const char* key, const char* meaning, SceneBuilder& scene) {
@@ -41,45 +36,99 @@ std::array<Curve, 4> four_curves(const Json& j, const char* key, const char* mea
     return {c[0], c[1], c[2], c[3]};
 }
 
+std::vector<double> nodes(const Json& j, const char* key, const SceneValues& values) {
+    return values.numbers(j.at(key, "the parameters of the curves"), 2, most_nodes, "parameters");
+}
+
 }  // namespace
 
+CoonsCurves frame_of(const Json& j, SceneBuilder& scene) {
+    return {scene.curve(j, "c0", "the curve x(u,0)"), scene.curve(j, "c1", "the curve x(u,1)"), scene.curve(j, "d0", "the curve x(0,v)"),
+            scene.curve(j, "d1", "the curve x(1,v)")};
+}
+
 BuiltSurface build_coons(const Json& j, SceneBuilder& scene) {
-    const auto curve = [&](const char* key, const char* meaning) { return scene.curve(j.at(key, meaning)).curve; };
-    const CoonsCurves curves{curve("c0", "the curve x(u,0)"), curve("c1", "the curve x(u,1)"), curve("d0", "the curve x(0,v)"), curve("d1", "the curve x(1,v)")};
-    return make_coons(curves, blend_of(j, scene.values()), part_of(j, scene.values()));
+    const auto blend = blend_of(j, scene.values());
+    const Part part = part_of(j, scene.values());
+    return fitted(frame_of(j, scene), j, scene, [&](const CoonsCurves& c) { return make_coons(c, blend, part); });
 }
 
 BuiltSurface build_coons_hermite(const Json& j, SceneBuilder& scene) {
     const HermiteData data{four_curves(j, "f", "the curves x(0,v), x_u(0,v), x_u(1,v), x(1,v)", scene),
                            four_curves(j, "g", "the curves x(u,0), x_v(u,0), x_v(u,1), x(u,1)", scene)};
-    return make_coons_hermite(data, twist_of(j, scene.values(), Twist::compatible), part_of(j, scene.values()));
+    const Twist twist = twist_of(j, scene.values(), Twist::compatible);
+    const Part part = part_of(j, scene.values());
+    return fitted(HermiteCurves{data, twist}, j, scene, [&](const HermiteCurves& d) { return make_coons_hermite(d.data, twist, part); });
+}
+
+BuiltSurface build_gordon(const Json& j, SceneBuilder& scene) {
+    static constexpr GordonBlend blends[] = {GordonBlend::lagrange, GordonBlend::hermite};
+    const SceneValues& values = scene.values();
+    const auto blend = j.find("blend");
+    const GordonNetwork network{scene.curves(j.at("u_curves", "the curves x(u, v_nodes[j])"), 2, most_nodes), nodes(j, "v_nodes", values),
+                                scene.curves(j.at("v_curves", "the curves x(u_nodes[i], v)"), 2, most_nodes), nodes(j, "u_nodes", values)};
+    const GordonBlend kind = blend ? blends[values.word(*blend, {"lagrange", "hermite"})] : GordonBlend::lagrange;
+    const Part part = part_of(j, values);
+    return fitted(network, j, scene, [&](const GordonNetwork& n) { return make_gordon(n, kind, part); });
+}
+
+BuiltSurface build_lagrange(const Json& j, SceneBuilder& scene) {
+    return make_lagrange(scene.curves(j.at("curves", "the curves x(u, nodes[i])"), 2, most_nodes), nodes(j, "nodes", scene.values()));
+}
+
+BuiltSurface build_generalized_coons(const Json& j, SceneBuilder& scene) {
+    const SceneValues& values = scene.values();
+    const auto direction = [&](const char* key, std::vector<Functional>& functionals, std::vector<Function>& blends, const Curve& along) {
+        const Json d = j.at(key, "{\"functionals\": [...], \"blends\": [...]}");
+        if (!d.is(Json::Kind::object)) d.expected("{\"functionals\": [...], \"blends\": [...]}");
+        d.allow_keys({"functionals", "blends"});
+        const std::string what = "functionals {\"value\": t} or {\"derivative\": t}";
+        for (const Json& l : values.list(d.at("functionals", what), 1, most_nodes, what)) {
+            if (!l.is(Json::Kind::object) || l.size() != 1) l.expected("{\"value\": t} or {\"derivative\": t}");
+            l.allow_keys({"value", "derivative"});
+            const Json at = l.children().front();
+            functionals.push_back({at.key() == "value" ? Functional::Kind::value : Functional::Kind::derivative, values.number(at, "a parameter")});
+        }
+        for (const Json& h : values.list(d.at("blends", "a formula in t for every functional"), functionals.size(), functionals.size(), "formulas in t"))
+            blends.push_back(values.function(h, along.begin(), along.end()));
+    };
+    GeneralizedCoons data;
+    const Json f = j.at("f", "a curve f_i(v) for every functional of u"), g = j.at("g", "a curve g_j(u) for every functional of v");
+    direction("u", data.u, data.blend_u, scene.curves(g, 1, most_nodes).front());
+    direction("v", data.v, data.blend_v, scene.curves(f, 1, most_nodes).front());
+    data.f = scene.curves(f, data.u.size(), data.u.size());
+    data.g = scene.curves(g, data.v.size(), data.v.size());
+    return make_generalized_coons(data, part_of(j, values));
 }
 
 BuiltSurface build_network(const Json& j, SceneBuilder& scene) {
     const SceneValues& values = scene.values();
-    if (const auto cross = j.find("cross")) {
-        if (cross->is(Json::Kind::object)) cross->expected("\"finite_difference\": twists and cross derivatives are known but not built yet");
-        values.word(*cross, {"finite_difference"});
-    }
-    whole_only(j, values, {"sum", "P1", "P2", "P1P2"});
     const Network network{scene.curves(j.at("a", "the curves x(i,v), i = 0..m"), 2, 1000), scene.curves(j.at("b", "the curves x(u,j), j = 0..n"), 2, 1000)};
-    return make_network(network, twist_of(j, values, Twist::average));
-}
-
-BuiltSurface build_coons_triangle(const Json& j, SceneBuilder& scene) {
-    static const std::vector<std::string> methods{"side_vertex", "three_curves", "bbg_convex", "bbg_boolean", "bbg_symmetric", "bbg_c1", "nielson_c1", "nielson_g1"};
-    static constexpr SideVertexForm forms[] = {SideVertexForm::delta, SideVertexForm::seed};
-    const SceneValues& values = scene.values();
-    const Json method = j.at("method", "one of the methods " + std::string("side_vertex, three_curves, bbg_convex, bbg_boolean, bbg_symmetric, bbg_c1, nielson_c1, nielson_g1"));
-    if (const std::size_t k = values.word(method, methods); k != 0) method.expected("\"side_vertex\": " + methods[k] + " is known but not built yet");
-    for (const char* key : {"cross", "normals"})
-        if (const auto other = j.find(key)) other->fail_at_key(std::string("found \"") + key + "\", expected no such key for the method side_vertex");
-    whole_only(j, values, {"sum", "s1", "s2", "s3", "s4"});
-
-    const auto e = scene.curves(j.at("edges", "the edges [E1: B to C, E2: C to A, E3: A to B]"), 3, 3);
-    const auto H = j.find("H"), form = j.find("form");
-    return make_side_vertex({e[0], e[1], e[2]}, H ? formula_of(*H, values) : Function::polynomial({0, 0, 1}),
-                            form ? forms[values.word(*form, {"delta", "seed"})] : SideVertexForm::delta);
+    const Twist twist = twist_of(j, values, Twist::average);
+    const Part part = part_of(j, values);
+    const auto cross = j.find("cross");
+    if (!cross || cross->is(Json::Kind::string)) {
+        if (cross) values.word(*cross, {"finite_difference"});
+        return fitted(network, j, scene, [&](const Network& n) { return make_network(n, twist, part); });
+    }
+    if (repair_wanted(j, scene))
+        j.at("repair", "true or false").expected("no repair of a network with twists or cross derivatives of its own: they would have to change places with the curves");
+    const std::string expected = "\"finite_difference\", {\"twists\": [[d_ij]]} or {\"A\": [...], \"B\": [...]}";
+    if (!cross->is(Json::Kind::object)) cross->expected(expected);
+    const auto twists = cross->find("twists");
+    if (twists) cross->allow_keys({"twists"});
+    else cross->allow_keys({"twists", "A", "B"});
+    const std::size_t m = network.a.size(), n = network.b.size();
+    const auto curves = [&](const char* key, const char* meaning, std::size_t count) { return scene.curves(cross->at(key, meaning), count, count); };
+    try {
+        if (twists) return make_network(network, from_twists(network, values.grid(*twists, 2, 2, 1000)), twist, part);
+        const CrossDerivatives given{curves("A", "the curves x_u(i,v), one for every curve a", m), curves("B", "the curves x_v(u,j), one for every curve b", n)};
+        return make_network(network, given, twist, part);
+    } catch (const IncompatibleError& error) {
+        const auto diagnosis = cure(network);
+        if (diagnosis.fits || diagnosis.misfit.empty()) throw;
+        throw_advised(error, diagnosis.misfit + (diagnosis.data ? ", but the curves fit with " + diagnosis.changes : ""));
+    }
 }
 
 }  // namespace isoparm

@@ -14,8 +14,9 @@ namespace isoparm {
 
 namespace {
 ControlNet polygon(const std::vector<Point>& points) {
-    ControlNet net{points, {}};
+    ControlNet net{points, {}, {}};
     for (int k = 0; k + 1 < static_cast<int>(points.size()); ++k) net.rods.push_back({k, k + 1});
+    for (std::size_t k = 0; k < points.size(); ++k) net.indices.push_back(std::to_string(k));
     return net;
 }
 Json points_of(const Json& j) { return j.at("points", "the points of the curve"); }
@@ -23,16 +24,27 @@ std::vector<double> weights_of(const Json& j, const SceneValues& values, std::si
     const auto weights = j.find("weights");
     return weights ? values.weights(*weights, count) : std::vector<double>{};
 }
+BuiltCurve with_spline(BuiltCurve c, int degree, std::vector<double> knots, bool rational) {
+    if (!rational) c.spline = SplineCurve{degree, std::move(knots), c.net.points};
+    return c;
+}
+std::vector<double> bezier_knots(int degree) {
+    std::vector<double> knots(static_cast<std::size_t>(degree) + 1, 0.0);
+    knots.insert(knots.end(), static_cast<std::size_t>(degree) + 1, 1.0);
+    return knots;
+}
 }  // namespace
 
 BuiltCurve build_line(const Json& j, SceneBuilder& scene) {
     const auto p = scene.values().points(points_of(j), 2, 2);
-    return {make_line(p[0], p[1]), polygon(p)};
+    return with_spline({make_line(p[0], p[1]), polygon(p)}, 1, bezier_knots(1), false);
 }
 
 BuiltCurve build_bezier_curve(const Json& j, SceneBuilder& scene) {
     const auto p = scene.values().points(points_of(j), 2, max_degree + 1);
-    return {make_bezier(p, weights_of(j, scene.values(), p.size())), polygon(p)};
+    const auto w = weights_of(j, scene.values(), p.size());
+    const int degree = static_cast<int>(p.size()) - 1;
+    return with_spline({make_bezier(p, w), polygon(p)}, degree, bezier_knots(degree), !w.empty());
 }
 
 BuiltCurve build_bspline_curve(const Json& j, SceneBuilder& scene) {
@@ -40,7 +52,8 @@ BuiltCurve build_bspline_curve(const Json& j, SceneBuilder& scene) {
     const int degree = values.integer(j.at("degree", "the degree"), 1, max_degree, "the degree");
     const auto p = values.points(points_of(j), static_cast<std::size_t>(degree) + 1);
     const auto knots = values.knots(j.at("knots", "the knots"), degree, p.size());
-    return {make_bspline(degree, knots, p, weights_of(j, values, p.size())), polygon(p)};
+    const auto w = weights_of(j, values, p.size());
+    return with_spline({make_bspline(degree, knots, p, w), polygon(p)}, degree, knots, !w.empty());
 }
 
 BuiltCurve build_hermite_curve(const Json& j, SceneBuilder& scene) {

@@ -9,7 +9,7 @@
 namespace isoparm {
 namespace {
 
-constexpr double kMargin = 0.06;                           // of the picture, on each side of what is fitted
+constexpr double kMargin = 0.06, kMostMargin = 0.35;       // of the picture, on each side of what is fitted
 const Point kThreeQuarter = normalized({1.2, -2.1, 1.2});  // from the middle of the scene to the eye
 
 Bounds box_of(const std::vector<Point>& points) {
@@ -42,21 +42,29 @@ struct Span {
     double extent() const { return high - low; }
 };
 
+/// The part of the picture's width and height that is not margin.
+Vec2 inner_part(const Camera& c, const Vec2& room) {
+    const auto part = [](double pixels, int size) { return 1 - 2 * std::min(kMostMargin, kMargin + pixels / size); };
+    return {part(room.x, c.width), part(room.y, c.height)};
+}
+
 /// Zooms so that everything is inside, and moves sideways so that it is in the middle.
-void fit_orthographic(Camera& c, const std::vector<Point>& drawn, double aspect) {
+void fit_orthographic(Camera& c, const std::vector<Point>& drawn, const Vec2& inner) {
+    const double aspect = static_cast<double>(c.width) / c.height;
     Span x, y;
     for (const Point& p : drawn) {
         x.add(dot(p - c.eye, c.right));
         y.add(dot(p - c.eye, c.up));
     }
     c.eye += x.middle() * c.right + y.middle() * c.up;
-    c.half_height = 0.5 * std::max(y.extent(), x.extent() / aspect) / (1 - 2 * kMargin);
+    c.half_height = 0.5 * std::max(y.extent() / inner.y, x.extent() / (aspect * inner.x));
 }
 
 /// Moves the eye to the nearest place from which everything is just inside the four planes of the view. A point at
 /// (x,y,z) from the eye is inside when |x| <= a z and |y| <= b z: bounds that are linear in where the eye is.
-void fit_perspective(Camera& c, const std::vector<Point>& drawn, double aspect) {
-    const double b = c.half_height * (1 - 2 * kMargin), a = b * aspect;
+void fit_perspective(Camera& c, const std::vector<Point>& drawn, const Vec2& inner) {
+    const double aspect = static_cast<double>(c.width) / c.height;
+    const double b = c.half_height * inner.y, a = c.half_height * aspect * inner.x;
     Span left, right, low, high;
     for (const Point& p : drawn) {
         const double x = dot(p - c.eye, c.right), y = dot(p - c.eye, c.up), z = c.depth(p);
@@ -83,7 +91,7 @@ Vec2 Camera::project(const Point& p) const {
     return {0.5 * width + dot(p - eye, right) / pixel, 0.5 * height - dot(p - eye, up) / pixel};
 }
 
-Camera make_camera(const CameraSettings& settings, const std::vector<Point>& drawn, int width, int height) {
+Camera make_camera(const CameraSettings& settings, const std::vector<Point>& drawn, int width, int height, const Vec2& room) {
     const Bounds box = drawn.empty() ? Bounds{{-1, -1, -1}, {1, 1, 1}} : box_of(drawn);
     const Point middle = 0.5 * (box.low + box.high);
     const double size = box.diagonal() > 0 ? box.diagonal() : 1;
@@ -110,14 +118,14 @@ Camera make_camera(const CameraSettings& settings, const std::vector<Point>& dra
         c.half_height = std::tan(settings.fov * std::numbers::pi / 360);
     }
     if (!drawn.empty()) {
-        const double aspect = static_cast<double>(width) / height;
+        const Vec2 inner = inner_part(c, room);
         const bool fit = settings.fit || !settings.eye;
         if (c.orthographic && (fit || c.half_height == 0)) {
             const double asked = c.half_height;
-            fit_orthographic(c, drawn, aspect);
+            fit_orthographic(c, drawn, inner);
             if (asked > 0 && !settings.fit) c.half_height = asked;
         } else if (fit) {
-            fit_perspective(c, drawn, aspect);
+            fit_perspective(c, drawn, inner);
             if (box.diagonal() == 0) c.eye += -2 * size * c.forward;  // a single point: from some distance
         }
     }

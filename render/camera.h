@@ -29,9 +29,9 @@ struct Camera {
 
 /// The camera that the settings describe. What they leave open is chosen for `drawn`, points of everything that is
 /// drawn (its convex hull, or about): a three-quarter view from the front, right and above with z up, everything inside
-/// with a margin of 6% of the picture. Throws Error(input) when eye and target coincide or a field of view is no such
+/// with a margin of 6% of the picture and `room` pixels at the sides and at top and bottom. Throws Error(input) when eye and target coincide or a field of view is no such
 /// angle.
-Camera make_camera(const CameraSettings& settings, const std::vector<Point>& drawn, int width, int height);
+Camera make_camera(const CameraSettings& settings, const std::vector<Point>& drawn, int width, int height, const Vec2& room = {});
 
 /// Size of a pixel where `box` is nearest to the camera, in scene units.
 double finest_pixel(const Camera& camera, const Bounds& box);

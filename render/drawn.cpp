@@ -55,10 +55,12 @@ std::vector<SceneObject> drawn_objects(const Scene& scene) {
     return all;
 }
 
-std::vector<Point> drawn_points(const Scene& scene) {
+std::vector<Point> drawn_points(const Scene& scene) { return drawn_points(scene, drawn_objects(scene)); }
+
+std::vector<Point> drawn_points(const Scene& scene, const std::vector<SceneObject>& objects) {
     const double size = bounding_box(scene).diagonal();
     std::vector<Point> points;
-    for (const SceneObject& o : drawn_objects(scene)) {
+    for (const SceneObject& o : objects) {
         const double radius = radius_of(o, size);
         switch (o.kind) {
             case SceneObject::Kind::surface:
@@ -66,14 +68,17 @@ std::vector<Point> drawn_points(const Scene& scene) {
                 break;
             case SceneObject::Kind::curve: {
                 const Curve& c = curve_of(scene, o);
-                for (int i = 0; i <= 64; ++i) add_around(c(c.begin() + (c.end() - c.begin()) * i / 64), radius, points);
+                for (int i = 0; i <= 64; ++i) add_around(c(c.begin() + (c.end() - c.begin()) * i / 64), o.line.width > 0 ? 0 : radius, points);
                 break;
             }
             case SceneObject::Kind::net:
                 for (const Point& p : o.net.points) add_around(p, kNetBall * radius, points);
                 break;
             case SceneObject::Kind::point:
-                add_around(o.point, radius, points);
+                add_around(o.point, o.line.width > 0 ? 0 : radius, points);
+                break;
+            case SceneObject::Kind::axes:
+                for (const Point& p : ends_of(o.axes)) points.push_back(p);
         }
     }
     std::erase_if(points, [](const Point& p) { return !finite(p); });

@@ -16,5 +16,6 @@ double radius_of(const SceneObject& o, double size);
 inline constexpr double kNetBall = 2.2;  // balls of a net, in radii of its rods
 /// Points all over what is drawn, for cameras that fit. Do not depend on a tolerance.
 std::vector<Point> drawn_points(const Scene& scene);
+std::vector<Point> drawn_points(const Scene& scene, const std::vector<SceneObject>& objects);
 
 }  // namespace isoparm

@@ -109,8 +109,13 @@ void dim_light(const RTCFilterFunctionNArguments* a) {
     if (geometry.solid) {
         if (std::find(query.solids.begin(), query.solids.end(), geometry.id) != query.solids.end()) return;
         query.solids.push_back(geometry.id);
+        query.transmittance *= 1 - static_cast<double>(geometry.opacity);
+        return;
     }
-    query.transmittance *= 1 - static_cast<double>(geometry.opacity);
+    // A sheet that lets light through throws a lighter shadow than its opacity asks for, as coloured glass does: sheets
+    // under sheets keep their colours. Opaque sheets throw a full one.
+    const double o = geometry.opacity;
+    query.transmittance *= 1 - o * o * o;
 }
 
 }  // namespace

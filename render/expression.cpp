@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "scalar/elementary.h"
 #include "suggest.h"
@@ -127,6 +128,9 @@ template <class S> struct Run {
 
 }  // namespace
 
+bool Expression::has_kinks() const {
+    return std::any_of(nodes_.begin(), nodes_.end(), [](const Node& n) { return n.op == Op::abs || n.op == Op::min || n.op == Op::max || n.op == Op::choose; });
+}
 double Expression::operator()(double t) const { return Run<double>{nodes_, t}.at(static_cast<int>(nodes_.size()) - 1); }
 
 bool Expression::valid_name(std::string_view name) {
@@ -343,9 +347,48 @@ Expression Expression::parse(std::string_view text, const std::map<std::string, 
 }
 
 namespace {
+template <class T, int I, int J, int N> Jet<T, I, J, N> mirrored(Jet<T, I, J, N> x) {
+    for (int k = 1; k < x.size; k += 2) x.c[k] = -x.c[k];
+    return x;
+}
+bool reaches(double t, double end) { return t >= end; }
+bool reaches(const Interval& t, double end) { return t.lo >= end; }
+bool reaches(const Pack& t, double end) {
+    bool any = false;
+    for (int i = 0; i < Pack::lanes; ++i) any = any || t[i] >= end;
+    return any;
+}
+/// At a kink a formula answers with the piece to its right, at the end of its domain with that to its left.
 struct Formula {
     std::shared_ptr<const Expression> e;
-    template <class S> S operator()(const S& t) const { return Run<S>{e->nodes(), t}.at(static_cast<int>(e->nodes().size()) - 1); }
+    double end = std::numeric_limits<double>::infinity();
+    bool kinks = e->has_kinks();
+
+    template <class S> S operator()(const S& t) const {
+        if constexpr (IsJet<S>::value)
+            if (kinks) return one_sided(t);
+        return run(t);
+    }
+
+private:
+    template <class S> S run(const S& t) const { return Run<S>{e->nodes(), t}.at(static_cast<int>(e->nodes().size()) - 1); }
+    template <class T, int N> JetU<T, N> one_sided(const JetU<T, N>& t) const {
+        if constexpr (N == 0) {  // a slope shows which side is meant
+            return JetU<T, 0>(one_sided(variable_u<T, 1>(t.c[0])).c[0]);
+        } else {
+            JetU<T, N> x = run(t);
+            if (!reaches(t.c[0], end)) return x;
+            const JetU<T, N> left = mirrored(run(mirrored(t)));  // run backwards, left is right
+            if constexpr (std::is_same_v<T, Pack>) {
+                for (int k = 0; k <= N; ++k)
+                    for (int i = 0; i < Pack::lanes; ++i)
+                        if (reaches(t.c[0][i], end)) x.c[k].set(i, left.c[k][i]);
+                return x;
+            } else {
+                return left;
+            }
+        }
+    }
 };
 struct FormulaCurve {
     Function x, y, z;
@@ -362,63 +405,70 @@ struct FormulaCurve {
 
 /// Samples step over a pole; enclosures do not: they stay unbounded however small the interval about it. Where they are
 /// bounded so is the formula, whatever its derivatives do.
-static void check_bounded(const Curve& curve) {
+static void check_bounded(const Function& f, const std::string& name, double begin, double end) {
     static constexpr int kPieces = 128, kMaxDepth = 40, kMaxEnclosures = 20'000;
     struct Piece {
         Interval t;
         int depth;
     };
     std::vector<Piece> stack;
-    const double begin = curve.begin(), end = curve.end();
     const auto knot = [&](int k) { return k == kPieces ? end : std::min(end, begin + (end - begin) * k / kPieces); };
     for (int k = kPieces; k > 0; --k) stack.push_back({{knot(k - 1), knot(k)}, 0});  // the first one on top
     for (int count = 0; !stack.empty(); ++count) {
         const auto [t, depth] = stack.back();
         stack.pop_back();
-        Vec3<Interval> p;
-        curve.taylor(t, 0, &p);
-        int axis = 0;
-        while (axis < 3 && p[axis].bounded()) ++axis;
-        if (axis == 3) continue;
+        Interval y;
+        f.taylor(t, 0, &y);
+        if (y.bounded()) continue;
         const double m = mid(t);
         if (depth >= kMaxDepth || count >= kMaxEnclosures || m <= t.lo || m >= t.hi) {
-            throw_input("found " + std::string(1, "xyz"[axis]) + "(t) that cannot be bounded near t = " + to_text(m) + ", expected a finite number on the whole domain");
+            throw_input("found " + name + "(t) that cannot be bounded near t = " + to_text(m) + ", expected a finite number on the whole domain");
         }
         stack.push_back({{m, t.hi}, depth + 1});
         stack.push_back({{t.lo, m}, depth + 1});
     }
 }
 
-Function make_formula(const Expression& formula) {
-    const Formula f{std::make_shared<const Expression>(formula)};
+static void check_samples(const Expression& e, const std::string& name, double begin, double end) {
+    for (int k = 0; k <= 128; ++k) {
+        const double t = k == 128 ? end : begin + (end - begin) * k / 128;
+        if (!std::isfinite(e(t))) throw_input("found " + name + "(" + to_text(t) + ") = " + to_text(e(t)) + ", expected a finite number on the whole domain");
+    }
+}
+static void check_switches(const Expression& e, const std::string& name, double begin, double end, const char* expected) {
+    for (const double t : e.switches()) {
+        if (!(t >= begin && t <= end)) continue;
+        const double before = e(t > begin ? std::nextafter(t, begin) : t), after = e(t < end ? std::nextafter(t, end) : t);
+        if (!(std::fabs(before - after) <= 1e-9 * std::max({1.0, std::fabs(before), std::fabs(after)})))
+            throw_input("found " + name + "(t) that jumps from " + to_text(before) + " to " + to_text(after) + " at t = " + to_text(t) + ", expected a continuous " + expected);
+    }
+}
+
+static Function formula_until(const Expression& formula, double end) {
+    const Formula f{std::make_shared<const Expression>(formula), end};
     const Coefficients exact = f(Coefficients(std::vector<double>{0, 1}));
     return exact.c.empty() ? make_function(f) : Function::polynomial(exact.c);
 }
+static Function checked_formula(const Expression& formula, const std::string& name, double begin, double end, const char* expected) {
+    check_samples(formula, name, begin, end);
+    check_switches(formula, name, begin, end, expected);
+    const Function f = formula_until(formula, end);
+    check_bounded(f, name, begin, end);
+    return f;
+}
+
+Function make_formula(const Expression& formula) { return formula_until(formula, std::numeric_limits<double>::infinity()); }
+Function make_formula(const Expression& formula, double begin, double end) { return checked_formula(formula, "H", begin, end, "function"); }
 
 Curve make_formula_curve(const std::array<Expression, 3>& xyz, double begin, double end) {
-    static constexpr const char* names[] = {"x", "y", "z"};
-    FormulaCurve curve{make_formula(xyz[0]), make_formula(xyz[1]), make_formula(xyz[2]), begin, end, {}};
-    for (int i = 0; i < 3; ++i) {
-        const Expression& e = xyz[i];
-        for (int k = 0; k <= 128; ++k) {
-            const double t = k == 128 ? end : begin + (end - begin) * k / 128;
-            if (!std::isfinite(e(t))) throw_input(std::string("found ") + names[i] + "(" + to_text(t) + ") = " + to_text(e(t)) + ", expected a finite number on the whole domain");
-        }
-        for (const double t : e.switches()) {
-            if (!(t > begin && t < end)) continue;
-            const double before = e(std::nextafter(t, begin)), after = e(std::nextafter(t, end));
-            if (!(std::fabs(before - after) <= 1e-9 * std::max({1.0, std::fabs(before), std::fabs(after)}))) {
-                throw_input(std::string("found ") + names[i] + "(t) that jumps from " + to_text(before) + " to " + to_text(after) +
-                            " at t = " + to_text(t) + ", expected a continuous curve");
-            }
-            curve.switches.push_back(t);
-        }
-    }
+    const auto part = [&](int i) { return checked_formula(xyz[i], std::string(1, "xyz"[i]), begin, end, "curve"); };
+    FormulaCurve curve{part(0), part(1), part(2), begin, end, {}};
+    for (const Expression& e : xyz)
+        for (const double t : e.switches())
+            if (t > begin && t < end) curve.switches.push_back(t);
     std::sort(curve.switches.begin(), curve.switches.end());
     curve.switches.erase(std::unique(curve.switches.begin(), curve.switches.end()), curve.switches.end());
-    Curve made = make_curve(std::move(curve));
-    check_bounded(made);
-    return made;
+    return make_curve(std::move(curve));
 }
 
 }  // namespace isoparm

@@ -45,6 +45,7 @@ public:
     double value() const { return nodes_.back().value; }
     /// Numbers t where a choice of the form t < number switches, in order.
     const std::vector<double>& switches() const { return switches_; }
+    bool has_kinks() const;
     double operator()(double t) const;
     const std::vector<Node>& nodes() const { return nodes_; }
 
@@ -57,10 +58,13 @@ private:
     std::vector<double> switches_;
 };
 
-/// As a function of t. Polynomials with exact coefficients are recognised and run as such.
+/// As a function of t. Polynomials with exact coefficients are recognised and run as such. At a kink (abs, min, max, if) derivatives are
+/// those to its right.
 Function make_formula(const Expression& formula);
-/// (x(t), y(t), z(t)) over [begin, end]. Throws Error(input) when it jumps or is not finite there: at 129 sample
-/// points, or where interval arithmetic cannot bound it however small the interval (a pole; 0/0).
+/// The same over [begin, end]; at `end` derivatives are those to the left. Throws Error(input) when it jumps or is not finite there: at
+/// 129 sample points, at its switches, or where interval arithmetic cannot bound it however small the interval (a pole; 0/0).
+Function make_formula(const Expression& formula, double begin, double end);
+/// (x(t), y(t), z(t)) over [begin, end], each checked so.
 Curve make_formula_curve(const std::array<Expression, 3>& xyz, double begin, double end);
 
 }  // namespace isoparm

@@ -25,6 +25,7 @@ inline Color surface_color(std::size_t n) {
 }
 inline Color curve_color() { return linear_from_srgb(0.17, 0.19, 0.24); }
 inline Color net_color() { return linear_from_srgb(0.36, 0.38, 0.42); }
+inline Color ink_color() { return linear_from_srgb(0.08, 0.08, 0.09); }  // of letters and axes
 inline Color point_color() { return linear_from_srgb(0.76, 0.20, 0.16); }
 
 /// The other side of a surface: grey with a touch of the complement, so that one look tells the sides apart.

@@ -8,8 +8,10 @@
 #include <thread>
 
 #include "camera.h"
-#include "drawn.h"
 #include "error.h"
+#include "overlay.h"
+#include "paint.h"
+#include "panels.h"
 #include "sampler.h"
 #include "shade.h"
 #include "surfel.h"
@@ -56,48 +58,52 @@ public:
     }
 
 private:
+    /// What a ray of the pixel met, and as which of its layers.
+    struct Met {
+        Hit hit;
+        int ray, layer;
+    };
     void add_nearest(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba& sum) const {
         Hit hits[EmbreeScene::packet];
-        Surfel surfels[EmbreeScene::packet];
-        Color light[EmbreeScene::packet];
         scene_.embree->intersect(rays, n, hits);
-        int found = 0;
+        std::vector<Met> met;
         for (int i = 0; i < n; ++i)
-            if (hits[i].found()) surfels[found++] = surfel(rays[i], hits[i], first + i, 0);
-        lighting_.shade(*scene_.embree, sampler, surfels, found, light);
-        for (int i = 0; i < found; ++i) {
-            Rgba seen;
-            add(surfels[i], light[i], seen);
-            sum.color += seen.color;
-            sum.alpha += seen.alpha;
-        }
+            if (hits[i].found()) met.push_back({hits[i], i, 0});
+        add_light(sampler, rays, first, n, met, sum);
     }
-
     void add_layers(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba& sum) const {
         std::vector<Hit> hits;
-        Surfel surfels[EmbreeScene::packet];
-        Color light[EmbreeScene::packet];
+        std::vector<Met> met;
         for (int i = 0; i < n; ++i) {
-            Rgba seen;
             scene_.embree->layers(rays[i], hits);
-            for (std::size_t next = 0; next < hits.size();) {
-                int found = 0;
-                for (; found < EmbreeScene::packet && next < hits.size(); ++found, ++next)
-                    surfels[found] = surfel(rays[i], hits[next], first + i, static_cast<int>(next));
-                lighting_.shade(*scene_.embree, sampler, surfels, found, light);
-                for (int k = 0; k < found; ++k) add(surfels[k], light[k], seen);
+            for (std::size_t k = 0; k < hits.size(); ++k) met.push_back({hits[k], i, static_cast<int>(k)});
+        }
+        add_light(sampler, rays, first, n, met, sum);
+    }
+    /// Layers of a ray come from front to back.
+    void add_light(const PixelSampler& sampler, const Ray* rays, int first, int n, const std::vector<Met>& met, Rgba& sum) const {
+        Rgba seen[EmbreeScene::packet];
+        for (std::size_t begin = 0; begin < met.size(); begin += EmbreeScene::packet) {
+            const int count = static_cast<int>(std::min<std::size_t>(EmbreeScene::packet, met.size() - begin));
+            Ray by[EmbreeScene::packet];
+            Hit hits[EmbreeScene::packet];
+            for (int k = 0; k < count; ++k) by[k] = rays[met[begin + k].ray], hits[k] = met[begin + k].hit;
+            Surfel surfels[EmbreeScene::packet];
+            surfels_at(scene_, camera_, by, hits, count, surfels);
+            for (int k = 0; k < count; ++k) {
+                surfels[k].sample = first + met[begin + k].ray;
+                surfels[k].dimension = 1 + 2 * met[begin + k].layer;
             }
-            sum.color += seen.color;
-            sum.alpha += seen.alpha;
+            Color light[EmbreeScene::packet];
+            lighting_.shade(*scene_.embree, sampler, surfels, count, light);
+            for (int k = 0; k < count; ++k) add(surfels[k], light[k], seen[met[begin + k].ray]);
+        }
+        for (int i = 0; i < n; ++i) {
+            sum.color += seen[i].color;
+            sum.alpha += seen[i].alpha;
         }
     }
 
-    Surfel surfel(const Ray& ray, const Hit& hit, int sample, int layer) const {
-        Surfel s = surfel_at(scene_, camera_, ray, hit);
-        s.sample = sample;
-        s.dimension = 1 + 2 * layer;
-        return s;
-    }
     static void add(const Surfel& s, const Color& light, Rgba& seen) {
         if (s.ink_cover > 0) seen.add_behind(s.ink, s.ink_cover);
         seen.add_behind(light, s.opacity);
@@ -172,39 +178,91 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-}  // namespace
+Image blank(int width, int height, const std::optional<Color>& background) {
+    Image image{width, height, {}};
+    image.pixels.resize(4 * static_cast<std::size_t>(width) * height);
+    if (background)
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            image.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>((*background)[static_cast<int>(i % 4)]);
+    return image;
+}
 
-Picture render(const Scene& scene, const RenderOptions& options) {
-    const int width = checked_size(options.width ? options.width : scene.image.width, "width", kLargestSize);
-    const int height = checked_size(options.height ? options.height : scene.image.height, "height", kLargestSize);
-    const int samples =
-        checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples);
-    const Area area = checked_area(options, width, height);
-    const Camera camera = make_camera(scene.camera, drawn_points(scene), width, height);
-    double reached = 0;  // progress never runs backwards, whatever its parts report
+struct Quality {
+    int samples;
+    Tolerance tolerance;
+    double pixel;  // pixels of this picture to one of the scene's
+};
+
+/// The part `area` of a view, in the view's own pixels.
+Picture render_view(const Scene& scene, const View& view, const Area& area, const Quality& how,
+                    const std::function<void(double)>& progress) {
     const auto part_of_progress = [&](double from, double share) -> std::function<void(double)> {
-        if (!options.progress) return {};
-        return [&, from, share](double fraction) {
-            options.progress(reached = std::max(reached, from + share * fraction));
-        };
+        if (!progress) return {};
+        return [&progress, from, share](double fraction) { progress(from + share * fraction); };
     };
-
+    const Camera camera =
+        make_camera(view.camera, view.fitted, view.width, view.height, room_for_text(view.objects, view.letter));
     Picture picture;
-    picture.tolerance = in_scene_units(options.tolerance.value_or(scene.tolerance), camera, bounding_box(scene));
+    picture.tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
     auto start = std::chrono::steady_clock::now();
-    const TracedScene traced = build_traced_scene(scene, picture.tolerance, part_of_progress(0, kMeshShare));
+    TracedScene traced = build_traced_scene(scene, view.objects, picture.tolerance, part_of_progress(0, kMeshShare));
+    for (Thing& thing : traced.things) thing.isolines.width *= how.pixel;
     picture.certified_error = traced.certified_error;
     picture.triangles = traced.triangles;
     picture.seconds_mesh = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
-    picture.image.width = area.width();
-    picture.image.height = area.height();
-    picture.image.pixels.resize(4 * static_cast<std::size_t>(area.width()) * area.height());
-    trace(Tracer(traced, camera, samples), area, scene.image.background, part_of_progress(kMeshShare, 1 - kMeshShare),
-          picture.image);
+    picture.image = blank(area.width(), area.height(), {});
+    trace(Tracer(traced, camera, how.samples), area, scene.image.background,
+          part_of_progress(kMeshShare, 1 - kMeshShare), picture.image);
+    paint(overlay(scene, view.objects, traced, camera, how.pixel, view.letter), area.x0, area.y0, picture.image);
     picture.seconds_trace = seconds_since(start);
     return picture;
+}
+
+Area common(const Area& a, const Area& b) {
+    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
+void paste(const Image& part, int x0, int y0, Image& whole) {
+    for (int y = 0; y < part.height; ++y)
+        std::copy_n(part.at(0, y), 4 * static_cast<std::size_t>(part.width), whole.at(x0, y0 + y));
+}
+
+}  // namespace
+
+Picture render(const Scene& scene, const RenderOptions& options) {
+    const int width = checked_size(options.width ? options.width : scene.image.width, "width", kLargestSize);
+    const int height = checked_size(options.height ? options.height : scene.image.height, "height", kLargestSize);
+    const Area area = checked_area(options, width, height);
+    const Quality how{
+        checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples),
+        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height};
+    double reached = 0;  // progress never runs backwards, whatever its parts report
+    const auto views = views_of(scene, width, height, options.also_fit);
+    Picture all;
+    all.image = blank(area.width(), area.height(), scene.image.background);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const View& v = views[i];
+        const Area seen = common(area, {v.x, v.y, v.x + v.width, v.y + v.height});
+        if (seen.width() <= 0 || seen.height() <= 0) continue;
+        std::function<void(double)> progress;
+        if (options.progress)
+            progress = [&, i](double fraction) {
+                options.progress(reached = std::max(
+                                     reached, (static_cast<double>(i) + fraction) / static_cast<double>(views.size())));
+            };
+        const Picture one =
+            render_view(scene, v, {seen.x0 - v.x, seen.y0 - v.y, seen.x1 - v.x, seen.y1 - v.y}, how, progress);
+        paste(one.image, seen.x0 - area.x0, seen.y0 - area.y0, all.image);
+        all.tolerance = std::max(all.tolerance, one.tolerance);
+        all.certified_error = std::max(all.certified_error, one.certified_error);
+        all.triangles += one.triangles;
+        all.seconds_mesh += one.seconds_mesh;
+        all.seconds_trace += one.seconds_trace;
+    }
+    paint(titles_of(scene, views), area.x0, area.y0, all.image);
+    return all;
 }
 
 }  // namespace isoparm

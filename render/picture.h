@@ -12,6 +12,7 @@ struct RenderOptions {
     int width = 0, height = 0, samples = 0;  // 0: as the scene says
     std::optional<Tolerance> tolerance;      // none: as the scene says
     std::optional<std::array<int, 4>> crop;  // x0,y0,x1,y1 in pixels; the picture is then only that part
+    std::vector<Point> also_fit;             // cameras that fit have these in the picture too: other frames of a film
     std::function<void(double)> progress;    // fraction done; called from the calling thread
 };
 

@@ -1,5 +1,8 @@
 #include "registry.h"
 
+#include "patches/cone.h"
+#include "patches/ruled.h"
+
 namespace isoparm {
 
 std::span<const SceneType<BuiltCurve>> curve_types() {
@@ -24,24 +27,28 @@ std::span<const SceneType<BuiltSurface>> surface_types() {
         {"bezier", {"points", "weights"}, build_bezier_patch},
         {"bspline", {"degree", "knots", "points", "weights"}, build_bspline_patch},
         {"bilinear", {"points"}, build_bilinear},
-        {"coons", {"c0", "c1", "d0", "d1", "blend", "part"}, build_coons},
-        {"coons_hermite", {"f", "g", "twist", "part"}, build_coons_hermite},
-        {"network", {"a", "b", "cross", "twist", "part"}, build_network},
+        {"coons", {"c0", "c1", "d0", "d1", "blend", "part", "repair"}, build_coons},
+        {"coons_hermite", {"f", "g", "twist", "part", "repair"}, build_coons_hermite},
+        {"hermite", {"points", "du", "dv", "duv"}, build_hermite_patch},
+        {"gordon", {"u_curves", "v_nodes", "v_curves", "u_nodes", "blend", "part", "repair"}, build_gordon},
+        {"lagrange", {"curves", "nodes"}, build_lagrange},
+        {"generalized_coons", {"u", "v", "f", "g", "part"}, build_generalized_coons},
+        {"translational", {"c", "d", "repair"}, build_translational},
+        {"translational_blend", {"c0", "c1", "d0", "d1", "repair"}, build_translational_blend},
+        {"control_net", {"c0", "c1", "d0", "d1", "repair"}, build_control_net},
+        {"ruled", {"c0", "c1"}, [](const Json& j, SceneBuilder& s) -> BuiltSurface {
+             return make_ruled(s.curve(j, "c0", "the curve x(u,0)"), s.curve(j, "c1", "the curve x(u,1)"));
+         }},
+        {"cone", {"curve", "apex"}, [](const Json& j, SceneBuilder& s) -> BuiltSurface {
+             return make_cone(s.curve(j, "curve", "the curve x(u,0)"), s.values().point(j.at("apex", "the apex [x, y, z]")));
+         }},
+        {"network", {"a", "b", "cross", "twist", "part", "repair"}, build_network},
         {"triangle", {"points"}, build_triangle},
         {"bezier_triangle", {"degree", "points", "weights"}, build_bezier_triangle},
-        {"coons_triangle", {"edges", "method", "H", "form", "cross", "normals", "part"}, build_coons_triangle},
+        {"coons_triangle", {"edges", "method", "H", "form", "projectors", "cross", "normals", "part", "repair"}, build_coons_triangle},
         {"composite", {"members"}, build_composite},
         {"transform", {"surface", "matrix", "mirror", "scale", "rotate", "translate"}, build_transformed_surface},
         {"file", {"path"}, build_file},
-        {"hermite", {}, nullptr},
-        {"gordon", {}, nullptr},
-        {"lagrange", {}, nullptr},
-        {"generalized_coons", {}, nullptr},
-        {"translational", {}, nullptr},
-        {"translational_blend", {}, nullptr},
-        {"control_net", {}, nullptr},
-        {"ruled", {}, nullptr},
-        {"cone", {}, nullptr},
         {"subdivision", {}, nullptr},
     };
     return types;

@@ -1,9 +1,11 @@
 // registry.h -- every `type` of a scene file: its keys and what builds it.
 #pragma once
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "patches/coons.h"
 #include "scene_builder.h"
 
 namespace isoparm {
@@ -33,15 +35,33 @@ BuiltCurve build_transformed_curve(const Json&, SceneBuilder&);
 // build_surfaces.cpp: of points
 BuiltSurface build_bezier_patch(const Json&, SceneBuilder&);
 BuiltSurface build_bspline_patch(const Json&, SceneBuilder&);
+BuiltSurface build_hermite_patch(const Json&, SceneBuilder&);
 BuiltSurface build_bilinear(const Json&, SceneBuilder&);
 BuiltSurface build_triangle(const Json&, SceneBuilder&);
 BuiltSurface build_bezier_triangle(const Json&, SceneBuilder&);
 
-// build_coons.cpp: of curves
+ControlNet net_of(const Grid<Point>& points);
+
+// build_coons.cpp: of curves to interpolate
+BuiltSurface build_gordon(const Json&, SceneBuilder&);
+BuiltSurface build_lagrange(const Json&, SceneBuilder&);
+BuiltSurface build_generalized_coons(const Json&, SceneBuilder&);
 BuiltSurface build_coons(const Json&, SceneBuilder&);
 BuiltSurface build_coons_hermite(const Json&, SceneBuilder&);
 BuiltSurface build_network(const Json&, SceneBuilder&);
+
+// build_triangles.cpp: of three edges
 BuiltSurface build_coons_triangle(const Json&, SceneBuilder&);
+/// Every method of coons_triangle, with its keys besides type and method.
+std::map<std::string, std::vector<std::string>> triangle_methods();
+
+/// The keys c0, c1, d0, d1.
+CoonsCurves frame_of(const Json&, SceneBuilder&);
+
+// build_translational.cpp: of curves to move
+BuiltSurface build_translational(const Json&, SceneBuilder&);
+BuiltSurface build_translational_blend(const Json&, SceneBuilder&);
+BuiltSurface build_control_net(const Json&, SceneBuilder&);
 
 // build_composites.cpp: of surfaces
 BuiltSurface build_composite(const Json&, SceneBuilder&);

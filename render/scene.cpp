@@ -39,10 +39,24 @@ void add_object(Union& all, const Scene& scene, const SceneObject& o) {
         case SceneObject::Kind::point: return all.add(o.point);
         case SceneObject::Kind::net:
             for (const Point& p : o.net.points) all.add(p);
+            return;
+        case SceneObject::Kind::axes:
+            for (const Point& p : ends_of(o.axes)) all.add(p);
     }
 }
 
 }  // namespace
+
+std::vector<Point> ends_of(const Axes& axes) {
+    std::vector<Point> ends;
+    for (int k = 0; k < 3; ++k) {
+        if (!axes.axis[k]) continue;
+        ends.insert(ends.end(), 2, axes.origin);
+        ends[ends.size() - 2][k] = axes.axis[k]->low;
+        ends.back()[k] = axes.axis[k]->high;
+    }
+    return ends;
+}
 
 Bounds bounding_box(const Scene& scene) {
     Union all;

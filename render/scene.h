@@ -8,6 +8,7 @@
 
 #include "composite.h"
 #include "curve.h"
+#include "math_text.h"
 
 namespace isoparm {
 
@@ -32,19 +33,56 @@ struct Isolines {
 struct ControlNet {
     std::vector<Point> points;
     std::vector<std::array<int, 2>> rods;
+    std::vector<std::string> indices;  // of each point, as its label has them: "01", "10,2"
+};
+
+/// What becomes of the part of a line or label that lies behind surfaces: shown fainter, left out, shown all the same,
+/// or dashed (a label: fainter).
+enum class Hidden { ghost, hide, show, dash };
+
+struct Label {
+    MathText text;  // empty: none
+    std::optional<double> at;      // parameter of the curve
+    std::optional<Vec2> at_uv;     // of the surface
+    std::optional<double> size;    // of the letters, pixels of the scene's picture; default a fraction of its height
+    std::optional<Color> color;
+    Hidden hidden = Hidden::ghost;
+    std::optional<int> side;       // 0 right, 1 above right, 2 above ... 7 below right, 8 on the spot
+};
+
+/// A curve, boundary or net drawn flat, or the diameter of a flat dot. Widths are in pixels of the scene's picture.
+struct LineStyle {
+    double width = 0;  // 0: a tube instead
+    std::vector<double> dash;
+    Hidden hidden = Hidden::hide;
+};
+
+/// Coordinate axes through `origin`, each over its range; ticks in ascending order.
+struct Axes {
+    struct Axis {
+        double low = 0, high = 1;
+        std::optional<std::vector<double>> ticks;  // default: round numbers
+        MathText name;
+    };
+    std::array<std::optional<Axis>, 3> axis;
+    Point origin{0, 0, 0};
 };
 
 struct SceneObject {
-    enum class Kind { surface, curve, net, point } kind = Kind::surface;
+    enum class Kind { surface, curve, net, point, axes } kind = Kind::surface;
     std::string name;              // of the surface or curve
-    std::string label;
+    Label label;
     std::optional<Color> color;    // default by kind
+    std::optional<Color> back;     // Kind::surface: of its other side; default a grey that goes with `color`
     double opacity = 1;
     std::optional<double> radius;  // of tubes, rods and balls, scene units; default a fraction of the scene's size
     Isolines isolines;
     bool boundary = false;         // draw the patches' boundary curves as tubes
+    LineStyle line;
     Point point;                   // Kind::point
     ControlNet net;                // Kind::net
+    std::vector<Label> net_labels; // Kind::net: one a point, or none
+    Axes axes;                     // Kind::axes
 };
 
 struct CameraSettings {
@@ -64,21 +102,35 @@ struct Tolerance {
     double value = 1e-4;  // relative: of the bounding-box diagonal
 };
 
+/// A part of the picture, with a title under it, that shows some of the scene's objects.
+struct Panel {
+    std::size_t first = 0, last = 0;       // objects first <= i < last
+    MathText title;                        // may be empty
+    std::optional<CameraSettings> camera;  // default: the scene's, which fits the objects of all panels
+};
+
 struct Scene {
     std::string path, title, source;
     std::string place;  // "path:line:column: at $.objects", or of the whole when nothing is named there
     std::map<std::string, double> parameters;
+    std::map<std::string, std::array<double, 2>> ranges;  // of the parameters; infinite where the file gives none
     std::vector<std::pair<std::string, Curve>> curves;  // in the order of the file
     std::vector<Surface> surfaces;
-    std::vector<SceneObject> objects;
+    std::vector<SceneObject> objects;  // of all panels, one after the other, when there are panels
+    std::vector<Panel> panels;
+    int panel_rows = 1, panel_columns = 1;
     CameraSettings camera;
     ImageSettings image;
     Tolerance tolerance;
+    std::vector<std::string> notes;  // what was done to definitions, each with its place
 
     /// nullptr when there is none of that name.
     const Surface* find_surface(const std::string& name) const;
     const Curve* find_curve(const std::string& name) const;
 };
+
+/// Where the axes begin and end, two points each.
+std::vector<Point> ends_of(const Axes& axes);
 
 /// Box around everything that is drawn (all surfaces and curves when nothing is).
 Bounds bounding_box(const Scene& scene);

@@ -50,7 +50,8 @@ template <class Built> Built build_typed(const char* what, std::span<const Scene
         } catch (const LocatedError&) {
             throw;
         } catch (const IncompatibleError& e) {
-            j.fail(e.condition() + ": found a gap of " + to_text(e.gap()) + ", expected at most " + to_text(e.tolerance()));
+            j.fail(e.condition() + ": found a gap of " + to_text(e.gap()) + ", expected at most " + to_text(e.tolerance()) +
+                   (e.advice().empty() ? "" : "; " + e.advice()));
         } catch (const Error& e) {
             const std::string message = e.what();
             const bool complete = message.find("found ") != std::string::npos;
@@ -67,6 +68,11 @@ SceneBuilder::SceneBuilder(const Json& root, SceneValues values)
     for (const Json& s : surfaces_)
         for (const Json& c : curves_)
             if (s.key() == c.key()) s.fail_at_key("found " + quoted(s.key()) + ", which is the name of a curve too, expected different names");
+}
+
+void SceneBuilder::note(const Json& definition, const std::string& text) {
+    const std::string note = definition.place() + ": " + text;
+    if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
 }
 
 std::vector<std::string> SceneBuilder::curve_names() const { return names_of(curves_); }

@@ -1,11 +1,13 @@
 // scene_builder.h -- curves and surfaces of a scene by name: built once, in any order, cycles refused.
 #pragma once
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "json.h"
+#include "patches/control_net.h"
 #include "scene.h"
 #include "scene_values.h"
 
@@ -15,6 +17,7 @@ struct BuiltCurve {
     BuiltCurve(Curve c, ControlNet n = {}) : curve(std::move(c)), net(std::move(n)) {}  // NOLINT: a curve without a net
     Curve curve;
     ControlNet net;  // empty where the type has no control points
+    std::optional<SplineCurve> spline;  // of a polynomial Bezier curve, B-spline or line
 };
 struct BuiltSurface {
     BuiltSurface(Patch p, ControlNet n = {}) : patches{{"", std::move(p)}}, net(std::move(n)) {}  // NOLINT
@@ -31,6 +34,8 @@ public:
     const SceneValues& values() const { return values_; }
     /// A curve or surface given by its name or on the spot.
     BuiltCurve curve(const Json& reference);
+    /// The curve under a key of a definition, which must be there; `meaning` for the message when it is not.
+    Curve curve(const Json& definition, const char* key, const char* meaning) { return curve(definition.at(key, meaning)).curve; }
     BuiltSurface surface(const Json& reference);
     /// A definition under "curves" or "surfaces".
     BuiltCurve named_curve(const Json& definition);
@@ -43,6 +48,10 @@ public:
     std::vector<std::string> surface_names() const;
     /// Surfaces that another one was made of.
     const std::set<std::string>& used_surfaces() const { return used_; }
+
+    /// Something that was done to a definition and that its author should know; each is kept once.
+    void note(const Json& definition, const std::string& text);
+    const std::vector<std::string>& notes() const { return notes_; }
 
 private:
     BuiltCurve build_curve(const Json& definition);
@@ -57,6 +66,7 @@ private:
     std::map<std::string, BuiltSurface> built_surfaces_;
     std::vector<std::string> in_progress_;
     std::set<std::string> used_;
+    std::vector<std::string> notes_;
 };
 
 }  // namespace isoparm

@@ -1,10 +1,12 @@
 // scene_file.cpp -- a scene from its file: parameters, curves, surfaces, what is drawn, and how.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "json.h"
 #include "scene.h"
 #include "scene_builder.h"
+#include "scene_objects.h"
 #include "scene_values.h"
 #include "suggest.h"
 
@@ -13,10 +15,6 @@ namespace isoparm {
 namespace {
 
 using Kind = Json::Kind;
-
-void must_be_object(const Json& j, const std::string& what) {
-    if (!j.is(Kind::object)) j.expected(what);
-}
 
 // ---- parameters -----------------------------------------------------------------------------------------------------
 
@@ -43,7 +41,7 @@ Parameter read_parameter(const Json& j, const SceneValues& values) {
 }
 
 /// Later parameters may use earlier ones.
-void read_parameters(const Json& root, const std::map<std::string, double>& overrides, SceneValues& values) {
+void read_parameters(const Json& root, const std::map<std::string, double>& overrides, SceneValues& values, std::map<std::string, std::array<double, 2>>& ranges) {
     const auto list = root.find("parameters");
     std::vector<std::string> names;
     if (list) {
@@ -60,6 +58,7 @@ void read_parameters(const Json& root, const std::map<std::string, double>& over
                 }
             }
             values.parameters[name] = p.value;
+            ranges[name] = {p.least, p.most};
             names.push_back(name);
         }
     }
@@ -70,69 +69,6 @@ void read_parameters(const Json& root, const std::map<std::string, double>& over
 }
 
 // ---- objects --------------------------------------------------------------------------------------------------------
-
-Isolines read_isolines(const Json& j, const SceneValues& values) {
-    must_be_object(j, "isolines {\"u\": count, \"v\": count}");
-    j.allow_keys({"u", "v", "width", "color", "opacity"});
-    Isolines lines;
-    if (const auto u = j.find("u")) lines.u = values.integer(*u, 0, 1000, "a number of lines");
-    if (const auto v = j.find("v")) lines.v = values.integer(*v, 0, 1000, "a number of lines");
-    if (const auto width = j.find("width")) lines.width = values.positive(*width, "a positive width in pixels");
-    if (const auto color = j.find("color")) lines.color = values.color(*color);
-    if (const auto opacity = j.find("opacity")) lines.opacity = values.in_range(*opacity, 0, 1, "an opacity from 0 to 1");
-    return lines;
-}
-
-ControlNet net_named(const Json& name, SceneBuilder& builder) {
-    const std::string& wanted = builder.values().text(name, "the name of a surface or curve with control points");
-    std::vector<std::string> names = builder.surface_names();
-    const bool surface = std::find(names.begin(), names.end(), wanted) != names.end();
-    const auto curves = builder.curve_names();
-    names.insert(names.end(), curves.begin(), curves.end());
-    if (std::find(names.begin(), names.end(), wanted) == names.end()) {
-        name.expected("the name of a surface or curve (have: " + listed(names) + ")" + did_you_mean(wanted, names));
-    }
-    ControlNet net = surface ? builder.surface(name).net : builder.curve(name).net;
-    if (net.points.empty()) name.expected("a surface or curve with control points (bezier, bspline, bezier_triangle, line ...)");
-    return net;
-}
-
-SceneObject read_object(const Json& j, SceneBuilder& builder) {
-    const SceneValues& values = builder.values();
-    const std::string kinds = "an object with one of the keys surface, curve, net or point";
-    must_be_object(j, kinds);
-    const auto surface = j.find("surface"), curve = j.find("curve"), net = j.find("net"), point = j.find("point");
-    if (!!surface + !!curve + !!net + !!point != 1) j.fail("found " + std::to_string(!!surface + !!curve + !!net + !!point) + " of the keys surface, curve, net and point, expected one of them");
-
-    SceneObject o;
-    if (surface) {
-        j.allow_keys({"surface", "color", "opacity", "isolines", "boundary", "radius", "label"});
-        o.kind = SceneObject::Kind::surface;
-        o.name = values.text(*surface, "the name of a surface");
-        builder.surface(*surface);
-        if (const auto lines = j.find("isolines")) o.isolines = read_isolines(*lines, values);
-        if (const auto boundary = j.find("boundary")) o.boundary = values.boolean(*boundary);
-    } else if (curve) {
-        j.allow_keys({"curve", "color", "opacity", "radius", "label"});
-        o.kind = SceneObject::Kind::curve;
-        o.name = values.text(*curve, "the name of a curve");
-        builder.curve(*curve);
-    } else if (net) {
-        j.allow_keys({"net", "color", "opacity", "radius", "label"});
-        o.kind = SceneObject::Kind::net;
-        o.net = net_named(*net, builder);
-        o.name = net->string();
-    } else {
-        j.allow_keys({"point", "color", "opacity", "radius", "label"});
-        o.kind = SceneObject::Kind::point;
-        o.point = values.point(*point);
-    }
-    if (const auto label = j.find("label")) o.label = values.text(*label, "a text");
-    if (const auto color = j.find("color")) o.color = values.color(*color);
-    if (const auto opacity = j.find("opacity")) o.opacity = values.in_range(*opacity, 0, 1, "an opacity from 0 to 1");
-    if (const auto radius = j.find("radius")) o.radius = values.positive(*radius, "a positive radius in scene units");
-    return o;
-}
 
 /// What a scene without objects shows: the surfaces that no other is made of; if there are none, its curves.
 std::vector<SceneObject> default_objects(const Scene& scene, const std::set<std::string>& used) {
@@ -208,6 +144,44 @@ Tolerance read_tolerance(const Json& j, const SceneValues& values) {
     return {Tolerance::Unit::relative, values.positive(*relative, "a positive fraction of the bounding-box diagonal")};
 }
 
+// ---- panels ---------------------------------------------------------------------------------------------------------
+
+/// "2x3": rows by columns, enough for the panels.
+void read_layout(const Json& j, const SceneValues& values, Scene& scene) {
+    const std::string expected = "rows and columns with room for " + std::to_string(scene.panels.size()) + " panels, such as \"1x" + std::to_string(scene.panels.size()) + "\"";
+    const std::string& text = values.text(j, expected);
+    int rows = 0, columns = 0, end = 0;
+    if (std::sscanf(text.c_str(), "%2dx%2d%n", &rows, &columns, &end) != 2 || end != static_cast<int>(text.size()) || rows < 1 || columns < 1 ||
+        static_cast<std::size_t>(rows) * columns < scene.panels.size()) {
+        j.expected(expected);
+    }
+    scene.panel_rows = rows;
+    scene.panel_columns = columns;
+}
+
+void read_panels(const Json& root, SceneBuilder& builder, Scene& scene) {
+    const SceneValues& values = builder.values();
+    const auto panels = root.find("panels"), layout = root.find("layout"), objects = root.find("objects");
+    if (layout && !panels) layout->fail_at_key("found \"layout\" without \"panels\", expected panels to lay out");
+    if (!panels) return;
+    if (objects) panels->fail_at_key("found both \"objects\" and \"panels\", expected the objects in the panels");
+    scene.place = panels->place();
+    for (const Json& j : values.list(*panels, 1, 64, "panels {\"objects\": [...]}")) {
+        must_be_object(j, "a panel {\"objects\": [...], \"title\": ...}");
+        j.allow_keys({"objects", "title", "camera"});
+        Panel panel{scene.objects.size(), 0, {}, {}};
+        for (const Json& o : values.list(j.at("objects", "the objects that the panel draws"), 1, 0, "objects to draw")) scene.objects.push_back(read_object(o, builder));
+        panel.last = scene.objects.size();
+        if (const auto title = j.find("title")) panel.title = read_math_text(*title, values, true);
+        if (const auto camera = j.find("camera")) panel.camera = read_camera(*camera, values);
+        scene.panels.push_back(std::move(panel));
+    }
+    const int count = static_cast<int>(scene.panels.size());
+    scene.panel_columns = count <= 3 ? count : static_cast<int>(std::ceil(std::sqrt(count)));
+    scene.panel_rows = (count + scene.panel_columns - 1) / scene.panel_columns;
+    if (layout) read_layout(*layout, values, scene);
+}
+
 // ---- the whole ------------------------------------------------------------------------------------------------------
 
 void check_version(const Json& root) {
@@ -223,12 +197,11 @@ Surface finished(const std::string& name, const std::string& type, BuiltSurface 
 }
 
 Scene read_scene(const Json& root, const std::map<std::string, double>& overrides) {
-    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "camera", "image", "tessellation"});
+    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "panels", "layout", "camera", "image", "tessellation"});
     check_version(root);
     SceneValues values;
-    read_parameters(root, overrides, values);
-
     Scene scene;
+    read_parameters(root, overrides, values, scene.ranges);
     scene.path = root.file();
     scene.place = root.place();
     scene.parameters = values.parameters;
@@ -252,6 +225,8 @@ Scene read_scene(const Json& root, const std::map<std::string, double>& override
         scene.place = objects->place();
         for (const Json& o : objects->children()) scene.objects.push_back(read_object(o, builder));
     }
+    scene.notes = builder.notes();
+    read_panels(root, builder, scene);
     if (scene.objects.empty()) scene.objects = default_objects(scene, builder.used_surfaces());
     scene.image.background = Color{1, 1, 1};
     if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera, values);

@@ -129,6 +129,15 @@ Expression SceneValues::formula(const Json& j) const {
     }
 }
 
+Function SceneValues::function(const Json& j, double begin, double end) const {
+    const Expression e = formula(j);
+    try {
+        return make_formula(e, begin, end);
+    } catch (const Error& error) {
+        j.fail(error.what());
+    }
+}
+
 const std::vector<std::string>& SceneValues::transform_keys() {
     static const std::vector<std::string> keys{"matrix", "mirror", "scale", "rotate", "translate"};
     return keys;

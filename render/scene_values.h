@@ -40,6 +40,8 @@ public:
     std::array<double, 2> interval(const Json& j) const;
 
     Expression formula(const Json& j) const;
+    /// A formula over [begin, end], which must not jump and must be finite there.
+    Function function(const Json& j, double begin, double end) const;
     /// Any of the keys translate, rotate, scale, mirror, matrix of the object j; at least one.
     Transform transform(const Json& j) const;
     static const std::vector<std::string>& transform_keys();

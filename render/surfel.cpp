@@ -38,9 +38,29 @@ Point facing(const Point& normal, const Point& view) {
     return c >= kLeast ? normal : normalized(normal + (kLeast - c) * view);
 }
 
-}  // namespace
+/// The frames of the patches that were hit, each patch asked once; `at` are the parameters.
+void frames_of(const TracedScene& scene, const Hit* hits, int n, Vec2* at, PointFrame* frames) {
+    bool done[EmbreeScene::packet] = {};
+    for (int first = 0; first < n; ++first) {
+        const Patch* patch = scene.things[hits[first].geometry].patch;
+        if (!patch || done[first]) continue;
+        int which[EmbreeScene::packet], count = 0;
+        double u[EmbreeScene::packet], v[EmbreeScene::packet];
+        PointFrame found[EmbreeScene::packet];
+        for (int i = first; i < n; ++i) {
+            const Thing& thing = scene.things[hits[i].geometry];
+            if (thing.patch != patch) continue;
+            at[i] = parameters(*patch, *thing.part, thing.part->triangles[hits[i].primitive], hits[i]);
+            u[count] = at[i].x, v[count] = at[i].y;
+            which[count++] = i;
+            done[i] = true;
+        }
+        patch->frames(static_cast<std::size_t>(count), u, v, found);
+        for (int k = 0; k < count; ++k) frames[which[k]] = found[k];
+    }
+}
 
-Surfel surfel_at(const TracedScene& scene, const Camera& camera, const Ray& ray, const Hit& hit) {
+Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, const Hit& hit, const Vec2& at, const PointFrame& frame) {
     const Thing& thing = scene.things[hit.geometry];
     const double clear = 4e-6 * scene.embree->radius() + thing.error;
     Surfel s;
@@ -60,8 +80,6 @@ Surfel surfel_at(const TracedScene& scene, const Camera& camera, const Ray& ray,
     const bool toward = dot(outward, s.view) >= 0, front = toward != thing.inside_out;
     const Point geometric = toward ? outward : -outward;
 
-    const Vec2 at = parameters(*thing.patch, *thing.part, corners, hit);
-    const PointFrame frame = thing.patch->frame(at.x, at.y);
     const Point du = coefficient(frame, 1, 0), dv = coefficient(frame, 0, 1);
     Point position = coefficient(frame, 0, 0);
     if (!finite(position)) position = on_mesh;
@@ -76,6 +94,15 @@ Surfel surfel_at(const TracedScene& scene, const Camera& camera, const Ray& ray,
                                     camera, position, ray.direction);
     }
     return s;
+}
+
+}  // namespace
+
+void surfels_at(const TracedScene& scene, const Camera& camera, const Ray* rays, const Hit* hits, int n, Surfel* out) {
+    Vec2 at[EmbreeScene::packet];
+    PointFrame frames[EmbreeScene::packet];
+    frames_of(scene, hits, n, at, frames);
+    for (int i = 0; i < n; ++i) out[i] = surfel(scene, camera, rays[i], hits[i], at[i], frames[i]);
 }
 
 }  // namespace isoparm

@@ -39,8 +39,8 @@ bool inside_out(const Mesh& mesh) {
 
 class Builder {
 public:
-    Builder(const Scene& scene, double tolerance, const std::function<void(double)>& progress)
-        : scene_(scene), tolerance_(tolerance), progress_(progress) {
+    Builder(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress)
+        : scene_(scene), objects_(objects), tolerance_(tolerance), progress_(progress) {
         const Bounds box = bounding_box(scene);
         size_ = box.diagonal() > 0 ? box.diagonal() : 1;
         result_.embree = std::make_unique<EmbreeScene>(0.5 * (box.low + box.high));
@@ -51,10 +51,9 @@ public:
     }
 
     TracedScene run() {
-        const auto objects = drawn_objects(scene_);
-        for (done_ = 0; done_ < objects.size(); ++done_) {
-            report(0, objects.size());
-            add(objects[done_], objects.size());
+        for (done_ = 0; done_ < objects_.size(); ++done_) {
+            report(0, objects_.size());
+            add(objects_[done_], objects_.size());
         }
         result_.embree->commit();
         // The traced mesh is the certified one moved by the rounding of its vertices.
@@ -71,12 +70,16 @@ private:
             case SceneObject::Kind::surface:
                 return add_surface(o, objects);
             case SceneObject::Kind::curve:
+                if (o.line.width > 0) return;  // drawn over the picture
                 add_curves(o, {drawn(curve_of(scene_, o))}, o.color.value_or(curve_color()), o.opacity);
                 return;
             case SceneObject::Kind::net:
                 return add_net(o);
             case SceneObject::Kind::point:
-                add_balls({o.point}, radius_of(o, size_), o.color.value_or(point_color()), o.opacity);
+                if (o.line.width > 0) return;
+                return add_balls({o.point}, radius_of(o, size_), o.color.value_or(point_color()), o.opacity);
+            case SceneObject::Kind::axes:
+                return;  // drawn over the picture
         }
     }
 
@@ -85,7 +88,8 @@ private:
         const Mesh& mesh = mesh_of(surface, objects);
         Thing thing;
         thing.front = o.color.value_or(surface_color(surfaces_++));
-        thing.back = back_color(thing.front);
+        // Both sides of a translucent sheet look alike, so that it keeps its colour where several lie over each other.
+        thing.back = o.back.value_or(o.opacity < 1 ? thing.front : back_color(thing.front));
         thing.opacity = o.opacity;
         thing.isolines = o.isolines;
         thing.mesh = &mesh;
@@ -99,7 +103,7 @@ private:
                 result_.things.push_back(thing);
             }
         }
-        if (o.boundary) add_boundary(o, surface);
+        if (o.boundary && !(o.line.width > 0)) add_boundary(o, surface);
     }
 
     const Mesh& mesh_of(const Surface& surface, std::size_t objects) {
@@ -121,22 +125,7 @@ private:
     }
 
     void add_boundary(const SceneObject& o, const Surface& surface) {
-        std::vector<DrawnCurve> edges;
-        std::vector<std::array<Point, 3>> seen;  // shared edges are drawn once
-        const auto same = [&](const Point& a, const Point& b) { return distance(a, b) <= 1e-7 * size_; };
-        for (const Member& m : surface.patches)
-            for (int k = 0; k < m.patch.edges(); ++k) {
-                DrawnCurve edge = drawn_edge(m.patch, k);
-                const std::array<Point, 3> p{edge.position(0), edge.position(0.5), edge.position(1)};
-                const bool known = std::any_of(seen.begin(), seen.end(), [&](const auto& q) {
-                    return same(p[1], q[1]) &&
-                           ((same(p[0], q[0]) && same(p[2], q[2])) || (same(p[0], q[2]) && same(p[2], q[0])));
-                });
-                if (known) continue;
-                seen.push_back(p);
-                edges.push_back(std::move(edge));
-            }
-        add_curves(o, edges, curve_color(), 1);
+        add_curves(o, drawn_edges(surface.patches, size_), curve_color(), 1);
     }
 
     void add_curves(const SceneObject& o, const std::vector<DrawnCurve>& curves, const Color& color, double opacity) {
@@ -170,7 +159,7 @@ private:
             if (distance(a, d) > 1e-9 * size_) rods.push_back({a, a + (1.0 / 3) * (d - a), a + (2.0 / 3) * (d - a), d});
         }
         const Color color = o.color.value_or(net_color());
-        add_tubes(rods, radius, color, o.opacity);
+        if (!(o.line.width > 0)) add_tubes(rods, radius, color, o.opacity);
         add_balls(o.net.points, kNetBall * radius, color, o.opacity);
     }
 
@@ -197,6 +186,7 @@ private:
     }
 
     const Scene& scene_;
+    const std::vector<SceneObject>& objects_;
     double tolerance_, mesh_tolerance_ = 0, size_ = 1;
     const std::function<void(double)>& progress_;
     TracedScene result_;
@@ -207,7 +197,10 @@ private:
 }  // namespace
 
 TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress) {
-    return Builder(scene, tolerance, progress).run();
+    return build_traced_scene(scene, drawn_objects(scene), tolerance, progress);
+}
+TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress) {
+    return Builder(scene, objects, tolerance, progress).run();
 }
 
 }  // namespace isoparm

@@ -33,5 +33,7 @@ struct TracedScene {
 /// Tessellates every surface that is drawn, once each, within `tolerance` (scene units). Refers to patches of `scene`,
 /// which must live as long. Throws what tessellate() throws, with the surface's name.
 TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress);
+/// Only some objects of the scene.
+TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress);
 
 }  // namespace isoparm

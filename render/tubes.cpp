@@ -72,6 +72,25 @@ DrawnCurve drawn_edge(const Patch& patch, int k) {
     return d;
 }
 
+std::vector<DrawnCurve> drawn_edges(const Composite& patches, double size) {
+    std::vector<DrawnCurve> edges;
+    std::vector<std::array<Point, 3>> seen;
+    const auto same = [&](const Point& a, const Point& b) { return distance(a, b) <= 1e-7 * size; };
+    for (const Member& m : patches)
+        for (int k = 0; k < m.patch.edges(); ++k) {
+            DrawnCurve edge = drawn_edge(m.patch, k);
+            const std::array<Point, 3> p{edge.position(0), edge.position(0.5), edge.position(1)};
+            const bool known = std::any_of(seen.begin(), seen.end(), [&](const auto& q) {
+                return same(p[1], q[1]) &&
+                       ((same(p[0], q[0]) && same(p[2], q[2])) || (same(p[0], q[2]) && same(p[2], q[0])));
+            });
+            if (known) continue;
+            seen.push_back(p);
+            edges.push_back(std::move(edge));
+        }
+    return edges;
+}
+
 std::vector<CubicPiece> cubic_pieces(const DrawnCurve& curve, double tolerance) {
     constexpr int kDepth = 12;
     std::vector<double> ends{curve.begin};

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "composite.h"
 #include "curve.h"
 #include "patch.h"
 
@@ -21,6 +22,8 @@ struct DrawnCurve {
 DrawnCurve drawn(const Curve& curve);
 /// Edge k of a patch.
 DrawnCurve drawn_edge(const Patch& patch, int k);
+/// The edges of all patches, those that patches share (within 1e-7 size) once.
+std::vector<DrawnCurve> drawn_edges(const Composite& patches, double size);
 
 /// Pieces within `tolerance` of the curve (checked at inner points of each piece), tangent to it where they join. A
 /// cubic comes back as itself; empty when the curve is shorter than the tolerance.

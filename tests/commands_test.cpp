@@ -59,11 +59,11 @@ TEST(Commands, UsageErrorsSuggest) {
     expect("tessellate " + scene("coons") + " -o x.ply --measure angular", 64, "expected one of: geometric, parametric");
     expect("render " + scene("coons") + " -o x.png --exact", 64, "not built yet");
     expect("render " + scene("coons") + " -o x.png --size 10", 64, "expected WIDTHxHEIGHT");
-    expect("figures nothing -o /tmp", 64, "expected one of: composite_coons");
+    expect("figures nothing -o /tmp", 64, "expected one of: cone");
 }
 TEST(Commands, InfoTellsWhatIsThere) {
     expect("info " + scene("sphere"), 0, "octant: bezier, degree 2 x 2, rational");
-    const Json::Value v = parsed(run("info --json --set=a=2 " + scene("gregory")).out);
+    const Json::Value v = parsed(run("info --json --set=a=2 " + scene("s004_gregory")).out);
     EXPECT_EQ(v["parameters"]["a"].asDouble(), 2);
     EXPECT_EQ(v["curves"].size(), 8u);
     EXPECT_EQ(v["surfaces"][0]["type"].asString(), "coons_hermite");
@@ -83,7 +83,7 @@ TEST(Commands, EvalAnswersInJson) {
     for (const char* key : {"Su", "Sv", "Suu", "Suv", "Svv", "n"}) EXPECT_EQ(p[key].size(), 3u) << key;
     EXPECT_NEAR(pole["n"][2].asDouble(), 1, 1e-15);
     EXPECT_TRUE(pole["gaussian"].isNull());
-    EXPECT_TRUE(parsed(run("eval " + scene("gregory") + " --at 0,0 --json").out)["points"][0]["Suv"].isNull());
+    EXPECT_TRUE(parsed(run("eval " + scene("s004_gregory") + " --surface square --at 0,0 --json").out)["points"][0]["Suv"].isNull());
     expect("eval " + scene("sphere") + " --surface sphere/south/octant --at 0,0", 0, "S         0 0 -1");
     expect("eval --at -0.5,0 -- " + scene("coons"), 65, "found -0.5,0");
 }
@@ -197,6 +197,50 @@ TEST(Commands, ScenesThatCannotBeMeshedAreRefusedWithTheirPlace) {
     refused(square("0") + "}", "1:1: at $: found surfaces of size 0, expected");
     for (const std::string command : {"tessellate s.json -o m.ply", "render s.json -o p.png"})
         refused(square("1e300") + ",\n\"objects\":[{\"surface\":\"S\"}]}", "3:11: at $.objects: found surfaces of size inf, from (0, 0, 0) to (1e+300, 1e+300, 0), expected", command);
+}
+TEST(Commands, FramesAreThePicturesOfTheirParameters) {
+    const TemporaryFolder t;
+    write_all(t / "s.json", R"({ "isoparm": 1, "parameters": { "h": { "value": 0, "min": -1, "max": 1 }, "k": 0 },
+        "objects": [{ "point": ["h", "k", 0], "radius": 0.2 }], "camera": { "eye": [0,-5,0], "target": [0,0,0] }, "image": { "width": 24, "height": 16, "samples": 4 } })");
+    const Outcome o = run("render s.json -o f%03d.png --frames 3 --animate h --animate k=0.5:0", t.path());
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_EQ(t.files(), 4u);
+    const std::vector<std::string> sets{"-1,0.5", "0,0.25", "1,0"};
+    for (int k = 0; k < 3; ++k) {
+        const std::string at = sets[k], comma = at.substr(0, at.find(','));
+        ASSERT_EQ(run("render s.json -o one.png --set h=" + comma + " --set k=" + at.substr(comma.size() + 1), t.path()).code, 0);
+        EXPECT_EQ(read_all(t / "one.png"), read_all(t / ("f00" + std::to_string(k) + ".png"))) << k;
+    }
+    const auto refused = [&](const std::string& arguments, const std::string& message) {
+        const Outcome bad = run("render s.json " + arguments, t.path());
+        EXPECT_EQ(bad.code, 64) << bad.err;
+        EXPECT_NE(bad.err.find(message), std::string::npos) << bad.err;
+    };
+    refused("-o f.png --frames 3 --animate h", "expected a name with one %d");
+    refused("-o f%s.png --frames 3 --animate h", "expected a name with one %d");
+    refused("-o f%d%d.png --frames 3 --animate h", "expected a name with one %d");
+    refused("-o f%d.png --frames 1 --animate h", "whole number from 2");
+    refused("-o f%d.png --frames 3", "--animate is missing");
+    refused("-o f%d.png --animate h", "--frames is missing");
+    refused("-o f%d.png --frames 3 --animate k", "no min and max");
+    refused("-o f%d.png --frames 3 --animate x=0:1", "no such parameter");
+    refused("-o f%d.png --frames 3 --animate h=0", "expected PARAMETER or PARAMETER=FROM:TO");
+    refused("-o f%d.png --frames 3 --animate h=0:2", "expected values from -1 to 1");
+    refused("-o f%d.png --frames 3 --animate h --animate h", "given twice");
+}
+TEST(Commands, WithoutFontsLabelsAreAnErrorAndPicturesAreNot) {
+    const TemporaryFolder t;
+    write_all(t / "fonts.conf", "<?xml version=\"1.0\"?><fontconfig></fontconfig>");
+    ::setenv("FONTCONFIG_FILE", (t / "fonts.conf").c_str(), 1);
+    const auto render = [&](const std::string& label) {
+        write_all(t / "s.json", "{ \"isoparm\": 1, \"objects\": [{ \"point\": [0,0,0], \"label\": \"" + label + "\" }], \"image\": { \"width\": 16, \"height\": 16, \"samples\": 1 } }");
+        return run("render s.json -o p.png", t.path());
+    };
+    const Outcome with = render("P_0"), without = render("");
+    ::unsetenv("FONTCONFIG_FILE");
+    EXPECT_EQ(without.code, 0) << without.err;
+    EXPECT_EQ(with.code, 4) << with.err;
+    EXPECT_NE(with.err.find("no font was found"), std::string::npos) << with.err;
 }
 TEST(Commands, LimitNamesTheCageThatItRefuses) {
     const TemporaryFolder t;

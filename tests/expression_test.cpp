@@ -143,6 +143,41 @@ TEST(Formula, AChoiceThatJumpsHasNoBoundAcrossItsSwitch) {
     EXPECT_TRUE(out[2].bounded());
 }
 
+TEST(Formula, AtAKinkAnswersWithThePieceToItsRight) {
+    for (const char* text : {"if(t<=0,0,t)", "if(t>0,t,0)", "if(0<t,t,0)", "if(0>=t,0,t)", "max(0,t)", "max(t,0)", "-min(0,-t)", "(t+abs(t))/2", "(t+abs(-t))/2"}) {
+        const Function f = make_formula(formula(text), 0, 1);
+        double number[3];
+        Interval point[3];
+        Pack pack[3];
+        f.taylor(0.0, 2, number);
+        f.taylor(Interval(0), 2, point);
+        f.taylor(Pack(0.0), 2, pack);
+        EXPECT_EQ(number[0], 0) << text;
+        EXPECT_EQ(number[1], 1) << text;
+        EXPECT_EQ(pack[1][3], 1) << text;
+        EXPECT_TRUE(point[1].contains(1)) << text << ": [" << point[1].lo << ", " << point[1].hi << "]";
+    }
+}
+TEST(Formula, AtTheEndOfItsDomainAnswersWithThePieceToItsLeft) {
+    for (const char* text : {"if(t<1,t,1)", "if(t>=1,1,t)", "min(t,1)", "min(1,t)", "1-abs(t-1)", "1-abs(1-t)"}) {
+        const Function f = make_formula(formula(text), 0, 1);
+        double number[3];
+        Interval point[3];
+        Pack pack[3];
+        f.taylor(1.0, 2, number);
+        f.taylor(Interval(1), 2, point);
+        f.taylor(Pack(1.0), 2, pack);
+        EXPECT_EQ(number[0], 1) << text;
+        EXPECT_EQ(number[1], 1) << text;
+        EXPECT_EQ(pack[1][3], 1) << text;
+        EXPECT_TRUE(point[1].contains(1)) << text;
+    }
+}
+TEST(Formula, OverADomainMustBeFiniteAndMustNotJump) {
+    for (const char* text : {"t/(2*t-1)", "if(t<0.5,0,1)", "if(t<=0,0,1)", "if(t<1,0,1)", "sqrt(0.5-t)"}) EXPECT_THROW(make_formula(formula(text), 0, 1), Error) << text;
+    EXPECT_NO_THROW(make_formula(formula("t/(2*t-1)"), 2, 3));
+}
+
 TEST(FormulaCurve, KnowsItsBreaksAndRefusesPolesAndJumps) {
     const auto curve = [](const std::string& y) { return make_formula_curve({formula("cos(t)"), formula(y), formula("0")}, 0, 2); };
     EXPECT_TRUE(curve("t^2").breaks().empty());

@@ -135,15 +135,27 @@ TEST(Render, TheNearerOfTwoSheetsIsSeenFirst) {
     }
 }
 
+TEST(Render, EachSideHasItsColour) {
+    for (const bool above : {true, false}) {
+        Scene scene = from_above(1, 8, 16);
+        if (!above) scene.camera.eye = Point{0, 0, -10};
+        SceneObject& o = draw(scene, "sheet", sheet(0));
+        o.color = Color{0.6, 0, 0};
+        o.back = Color{0, 0, 0.6};
+        const Image image = render(scene, {}).image;
+        EXPECT_EQ(middle(image)[0] > middle(image)[2], above);
+    }
+}
+
 TEST(Render, ShadowsThroughTranslucentSheetsAreLighter) {
     std::vector<double> light;
-    for (const double opacity : {1.0, 0.5, 0.0}) {
+    for (const double opacity : {1.0, 0.75, 0.0}) {
         Scene scene = from_above(2, 16, 64);
         draw(scene, "ground", {{"ground", make_bezier_patch({{{-9, -9, -1}, {-9, 9, -1}}, {{9, -9, -1}, {9, 9, -1}}})}})
             .color = Color{0.5, 0.5, 0.5};
         // Out of the picture, between the ground and the light, which comes from the upper left and the viewer.
         SceneObject& roof = draw(
-            scene, "roof", {{"roof", make_bezier_patch({{{-7, 1.01, 0}, {-7, 7, 0}}, {{7, 1.01, 0}, {7, 7, 0}}})}});
+            scene, "roof", {{"roof", make_bezier_patch({{{-7, 1.25, 0}, {-7, 7, 0}}, {{7, 1.25, 0}, {7, 7, 0}}})}});
         roof.opacity = opacity;
         light.push_back(mean(render(scene, {}).image, 1));
     }

@@ -1,365 +1,17 @@
-#include "samples.h"
+// samples.cpp -- all types of surfaces, and random data to build them with.
+#include "samples_parts.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "curves/arc.h"
 #include "curves/bezier.h"
-#include "curves/bspline.h"
-#include "curves/hermite.h"
-#include "curves/interpolate.h"
-#include "curves/isocurve.h"
-#include "curves/line.h"
-#include "curves/modify.h"
-#include "patches/bezier_triangle.h"
-#include "patches/coons.h"
-#include "patches/coons_hermite.h"
-#include "patches/network.h"
-#include "patches/side_vertex.h"
-#include "patches/tensor_bezier.h"
-#include "patches/transformed.h"
-#include "scalar/elementary.h"
 
 namespace isoparm::tests {
-namespace {
-
-std::vector<Point> random_points(Random& r, int count) {
-    std::vector<Point> list;
-    for (int i = 0; i < count; ++i) list.push_back(r.point({0.7 * i, 0, 0}));
-    return list;
-}
-std::vector<double> random_weights(Random& r, int count) {
-    std::vector<double> list;
-    for (int i = 0; i < count; ++i) list.push_back(r.number(0.4, 2.5));
-    return list;
-}
-Grid<double> random_weights(Random& r, int rows, int columns) {
-    Grid<double> grid;
-    for (int i = 0; i < rows; ++i) grid.push_back(random_weights(r, columns));
-    return grid;
-}
-/// An affine map without symmetry, and the offset of the data after it.
-Transform random_map(Random& r) {
-    return Transform::translate(r.offset()) * Transform::mirror(r.vector() + Point{0, 0, 2}, 0.3) *
-           Transform::rotate({1, 2, 3}, r.number(0, 360)) * Transform::scale({1.5, 0.5, 2});
-}
-
-// ---- curves ---------------------------------------------------------------------------------------------------------
-Curve nurbs(Random& r) {
-    return make_bspline(3, {0, 0, 0, 0, 0.2, 0.5, 0.5, 1.1, 1.1, 1.1, 2, 2, 2, 2}, random_points(r, 10),
-                        random_weights(r, 10));
-}
-Curve isocurve_of_spline(Random& r) {
-    return make_isocurve(
-        make_bspline_patch(3, 2, {0, 0, 0, 0, 0.4, 1, 1, 1, 1}, {0, 0, 0, 1, 2, 2, 2}, random_net(r, 5, 4)), Along::u,
-        0.7);
-}
-Curve arc(Random& r, double degrees) {
-    const Point center = r.point(), a = r.vector() + Point{2, 0, 0};
-    const Transform turn = Transform::rotate(cross(a, r.vector() + Point{0, 3, 0}), degrees);
-    return make_arc(center, center + a, center + turn.vector(a));
-}
-/// A helix: not a spline, so it runs on jets only.
-struct Helix {
-    Point center;
-    double begin = -1, end = 2.5;
-    template <class S> Vec3<S> operator()(const S& t) const {
-        return {cos(t) + center.x, sin(t) + center.y, S(exp(t * 0.3)) + center.z};
-    }
-    Vec3<Polynomial> operator()(const Polynomial&) const {
-        return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
-    }
-};
-
-Curve cubic_spline(Random& r, const Point& from, const Point& to) {
-    return make_interpolate({from, 0.6 * from + 0.4 * to + r.vector(0.3), 0.3 * from + 0.7 * to + r.vector(0.3), to},
-                            SplineEnds::natural);
-}
-Curve rational_cubic(Random& r, const Point& from, const Point& to) {
-    return make_bezier({from, 0.7 * from + 0.3 * to + r.vector(0.5), 0.3 * from + 0.7 * to + r.vector(0.5), to},
-                       random_weights(r, 4));
-}
-
-// ---- surfaces on a rectangle ----------------------------------------------------------------------------------------
-/// Boundary of a Bezier patch, from the border of its net.
-std::vector<Curve> border(const Grid<Point>& p, const Grid<double>& w = {}) {
-    std::vector<Point> c0, c1;
-    std::vector<double> w0, w1;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-        c0.push_back(p[i].front()), c1.push_back(p[i].back());
-        if (!w.empty()) w0.push_back(w[i].front()), w1.push_back(w[i].back());
-    }
-    return {make_bezier(c0, w0), make_bezier(p.back(), w.empty() ? w0 : w.back()), make_bezier(c1, w1),
-            make_bezier(p.front(), w.empty() ? w0 : w.front())};
-}
-PatchSample bezier_patch(Random& r) {
-    const auto net = random_net(r, 5, 4);
-    return {make_bezier_patch(net), border(net)};
-}
-PatchSample rational_bezier_patch(Random& r) {
-    const auto net = random_net(r, 4, 3);
-    const auto w = random_weights(r, 4, 3);
-    return {make_bezier_patch(net, w), border(net, w)};
-}
-PatchSample sphere_octant(Random& r) {
-    const double s = std::sqrt(0.5);
-    Grid<Point> p{
-        {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
-    const Grid<double> w{{1, s, 1}, {s, 0.5, s}, {1, s, 1}};
-    for (auto& row : p)
-        for (auto& x : row) x += r.offset();
-    return {make_bezier_patch(p, w), border(p, w)};
-}
-PatchSample spline_patch(Random& r) {
-    const auto net = random_net(r, 6, 5);
-    std::vector<Point> c0, c1;
-    for (const auto& row : net) c0.push_back(row.front()), c1.push_back(row.back());
-    const std::vector<double> ku{0, 0, 0, 0, 0.3, 0.7, 1, 1, 1, 1}, kv{-1, -1, -1, 0.5, 1, 2, 2, 2};
-    return {make_bspline_patch(3, 2, ku, kv, net),
-            {make_bspline(3, ku, c0), make_bspline(2, kv, net.back()), make_bspline(3, ku, c1),
-             make_bspline(2, kv, net.front())}};
-}
-/// Knots of full multiplicity inside (C0 along u = 0.4), and a knot vector that is not clamped along v.
-PatchSample nurbs_patch(Random& r) {
-    return {make_bspline_patch(2, 3, {0, 0, 0, 0.4, 0.4, 1, 1, 1}, {0, 1, 2, 3, 4, 5, 6, 7, 8}, random_net(r, 5, 5),
-                               random_weights(r, 5, 5)),
-            {}};
-}
-
-PatchSample coons_over(const Frame& e, const std::optional<Function>& blend = {}) {
-    return {make_coons({e.c0, e.c1, e.d0, e.d1}, blend), {e.c0, e.d1, e.c1, e.d0}};
-}
-/// sin(pi t / 2)^2: a blend that is no polynomial
-struct SineBlend {
-    template <class S> S operator()(const S& t) const { return 0.5 * (1.0 - cos(t * std::numbers::pi)); }
-    Polynomial operator()(const Polynomial&) const { return Polynomial::nothing(); }
-};
-
-/// Boundary, cross derivatives and their Bezier points; from a Bezier patch they are compatible.
-struct HermiteNet {
-    std::array<std::vector<Point>, 4> f, g;
-};
-HermiteNet hermite_net(Random& r) {
-    const auto p = random_net(r, 5, 4);
-    const int m = 4, n = 3;
-    HermiteNet d;
-    for (int j = 0; j <= n; ++j) {
-        d.f[0].push_back(p[0][j]), d.f[3].push_back(p[m][j]);
-        d.f[1].push_back(double(m) * (p[1][j] - p[0][j])), d.f[2].push_back(double(m) * (p[m][j] - p[m - 1][j]));
-    }
-    for (int i = 0; i <= m; ++i) {
-        d.g[0].push_back(p[i][0]), d.g[3].push_back(p[i][n]);
-        d.g[1].push_back(double(n) * (p[i][1] - p[i][0])), d.g[2].push_back(double(n) * (p[i][n] - p[i][n - 1]));
-    }
-    return d;
-}
-HermiteData hermite_data(const HermiteNet& d) {
-    const auto curves = [](const std::array<std::vector<Point>, 4>& p) {
-        return std::array<Curve, 4>{make_bezier(p[0]), make_bezier(p[1]), make_bezier(p[2]), make_bezier(p[3])};
-    };
-    return {curves(d.f), curves(d.g)};
-}
-PatchSample hermite_over(const HermiteData& d, Twist twist) {
-    return {make_coons_hermite(d, twist), {d.g[0], d.f[3], d.g[3], d.f[0]}};
-}
-/// The inner points of the cross derivatives move: the twists no longer agree.
-HermiteData twisted_data(Random& r) {
-    HermiteNet d = hermite_net(r);
-    for (int k : {1, 2}) {
-        for (std::size_t i = 1; i + 1 < d.f[k].size(); ++i) d.f[k][i] += r.vector();
-        for (std::size_t i = 1; i + 1 < d.g[k].size(); ++i) d.g[k][i] += r.vector();
-    }
-    return hermite_data(d);
-}
-
-/// C1 cubic splines over a grid of points, so that knots are where the curves cross.
-Network spline_network(Random& r, int m, int n) {
-    std::vector<std::vector<Point>> p(m + 1);
-    for (int i = 0; i <= m; ++i)
-        for (int j = 0; j <= n; ++j) p[i].push_back(r.point({double(i), double(j), 0}, 0.3));
-    Network net;
-    for (int i = 0; i <= m; ++i) net.a.push_back(make_interpolate(p[i], SplineEnds::catmull_rom));
-    for (int j = 0; j <= n; ++j) {
-        std::vector<Point> row;
-        for (int i = 0; i <= m; ++i) row.push_back(p[i][j]);
-        net.b.push_back(make_interpolate(row, SplineEnds::natural));
-    }
-    return net;
-}
-PatchSample network_over(const Network& net, Twist twist) {
-    return {make_network(net, twist), {net.b.front(), net.a.back(), net.b.back(), net.a.front()}};
-}
-
-// ---- surfaces on a triangle -----------------------------------------------------------------------------------------
-PatchSample bezier_triangle(Random& r, int degree, bool rational) {
-    std::vector<Point> points;
-    std::vector<double> weights;
-    std::vector<std::vector<Point>> p(degree + 1);
-    std::vector<std::vector<double>> w(degree + 1);
-    for (int k = 0; k <= degree; ++k)
-        for (int j = 0; j <= degree - k; ++j) {
-            const double u = double(degree - j - k) / degree, v = double(j) / degree;
-            p[k].push_back(r.point({2 * u, 2 * v, u * v}, 0.3));
-            w[k].push_back(rational ? r.number(0.5, 2) : 1);
-            points.push_back(p[k][j]), weights.push_back(w[k][j]);
-        }
-    std::vector<Point> e[3];
-    std::vector<double> x[3];
-    for (int t = 0; t <= degree; ++t) {
-        e[0].push_back(p[t][degree - t]), x[0].push_back(w[t][degree - t]);
-        e[1].push_back(p[degree - t][0]), x[1].push_back(w[degree - t][0]);
-        e[2].push_back(p[0][t]), x[2].push_back(w[0][t]);
-    }
-    PatchSample s{make_bezier_triangle(degree, points, rational ? weights : std::vector<double>{}), {}};
-    for (int k = 0; k < 3; ++k) s.boundary.push_back(make_bezier(e[k], rational ? x[k] : std::vector<double>{}));
-    return s;
-}
-PatchSample side_vertex(const std::array<Curve, 3>& e, const Function& h, SideVertexForm form) {
-    return {make_side_vertex(e, h, form), {e[0], e[1], e[2]}};
-}
-template <SideVertexForm form> PatchSample side_vertex(Random& r, std::vector<double> h) {
-    return side_vertex(random_triangle(r), Function::polynomial(std::move(h)), form);
-}
-constexpr auto kDelta = SideVertexForm::delta, kSeed = SideVertexForm::seed;
-
-const std::vector<double> kT{0, 1}, kT2{0, 0, 1}, kT3{0, 0, 0, 1}, kQuartic{0, 0, 0, 2, -1}, kSmooth{0, 0, 3, -2};
-
-}  // namespace
-
-const std::vector<CurveType>& curve_types() {
-    static const std::vector<CurveType> list{
-        {"line", [](Random& r) { return make_line(r.point(), r.point()); }},
-        {"bezier", [](Random& r) { return make_bezier(random_points(r, 6)); }},
-        {"bezier_point", [](Random& r) { return make_bezier({r.point()}); }},
-        {"bezier_degree_12", [](Random& r) { return make_bezier(random_points(r, 13)); }},
-        {"bezier_rational", [](Random& r) { return make_bezier(random_points(r, 5), random_weights(r, 5)); }},
-        {"bspline",
-         [](Random& r) {
-             return make_bspline(3, {0, 0, 0, 0, 0.3, 1, 1.7, 2, 2, 2, 2}, random_points(r, 7));
-         }},
-        {"bspline_multiple_knots",
-         [](Random& r) {
-             return make_bspline(3, {0, 0, 0, 0, 1, 1, 2, 2, 2, 3, 3, 3, 3}, random_points(r, 9));
-         }},
-        {"bspline_unclamped",
-         [](Random& r) {
-             return make_bspline(2, {0, 0.5, 1, 1.7, 3, 4, 4.5}, random_points(r, 4));
-         }},
-        {"nurbs", nurbs},
-        {"hermite",
-         [](Random& r) {
-             return make_hermite(random_points(r, 4), {r.vector(), r.vector(), r.vector(), r.vector()});
-         }},
-        {"interpolate_natural", [](Random& r) { return make_interpolate(random_points(r, 6), SplineEnds::natural); }},
-        {"interpolate_clamped", [](Random& r) { return make_interpolate(random_points(r, 5), SplineEnds::clamped); }},
-        {"interpolate_catmull_rom",
-         [](Random& r) { return make_interpolate(random_points(r, 5), SplineEnds::catmull_rom); }},
-        {"arc_short", [](Random& r) { return arc(r, 47); }},
-        {"arc_long", [](Random& r) { return arc(r, 165); }},
-        {"formula", [](Random& r) { return make_curve(Helix{r.point()}); }},
-        {"isocurve", [](Random& r) { return make_isocurve(bezier_patch(r).patch, Along::v, 0.3); }},
-        {"isocurve_of_spline", isocurve_of_spline},
-        {"isocurve_with_a_corner", [](Random& r) { return make_isocurve(nurbs_patch(r).patch, Along::u, 3.5); }},
-        {"reversed", [](Random& r) { return reversed(nurbs(r)); }},
-        {"reversed_formula", [](Random& r) { return reversed(make_curve(Helix{r.point()})); }},
-        {"reversed_isocurve", [](Random& r) { return reversed(isocurve_of_spline(r)); }},
-        {"segment", [](Random& r) { return segment(nurbs(r), 0.3, 1.6); }},
-        {"segment_same_parameter", [](Random& r) { return segment(nurbs(r), 0.3, 1.6, false); }},
-        {"segment_formula", [](Random& r) { return segment(make_curve(Helix{r.point()}), -0.5, 1.25); }},
-        {"segment_isocurve", [](Random& r) { return segment(isocurve_of_spline(r), 0.1, 0.9); }},
-        {"transformed",
-         [](Random& r) {
-             Random h = r.here();
-             const Curve c = nurbs(h);
-             return transformed(c, random_map(r));
-         }},
-        {"transformed_formula",
-         [](Random& r) {
-             Random h = r.here();
-             const Curve c = make_curve(Helix{h.point()});
-             return transformed(c, random_map(r));
-         }},
-        {"reparametrized", [](Random& r) { return reparametrized(nurbs(r), -1, 4); }},
-        {"reparametrized_formula", [](Random& r) { return reparametrized(make_curve(Helix{r.point()}), 0, 1); }},
-        {"combination",
-         [](Random& r) {
-             const Curve a = make_interpolate(random_points(r, 4), SplineEnds::natural),
-                         b = make_bezier(random_points(r, 5)),
-                         c = make_hermite(random_points(r, 3), {r.vector(), r.vector(), r.vector()});
-             return linear_combination({-0.5, 2, -0.5}, {a, reparametrized(b, 0, 3), reparametrized(c, 0, 3)});
-         }},
-        {"combination_rational",
-         [](Random& r) {
-             const Curve a = nurbs(r), b = make_bezier(random_points(r, 5));
-             return linear_combination({0.25, 0.75}, {a, reparametrized(b, 0, 2)});
-         }},
-    };
-    return list;
-}
-
 const std::vector<PatchType>& patch_types() {
-    static const std::vector<PatchType> list{
-        {"bezier", bezier_patch},
-        {"bezier_rational", rational_bezier_patch},
-        {"sphere_octant", sphere_octant},
-        {"bspline", spline_patch},
-        {"nurbs_multiple_knots", nurbs_patch},
-        {"coons", [](Random& r) { return coons_over(random_frame(r)); }},
-        {"coons_of_lines",
-         [](Random& r) {
-             return coons_over(
-                 random_frame(r, [](Random&, const Point& a, const Point& b) { return make_line(a, b); }));
-         }},
-        {"coons_of_splines", [](Random& r) { return coons_over(random_frame(r, cubic_spline)); }},
-        {"coons_of_rationals", [](Random& r) { return coons_over(random_frame(r, rational_cubic)); }},
-        {"coons_cubic_blend", [](Random& r) { return coons_over(random_frame(r), cubic_blend()); }},
-        {"coons_sine_blend", [](Random& r) { return coons_over(random_frame(r), make_function(SineBlend{})); }},
-        {"coons_hermite", [](Random& r) { return hermite_over(hermite_data(hermite_net(r)), Twist::compatible); }},
-        {"coons_hermite_average", [](Random& r) { return hermite_over(twisted_data(r), Twist::average); }},
-        {"coons_hermite_zero", [](Random& r) { return hermite_over(twisted_data(r), Twist::zero); }},
-        {"gregory", [](Random& r) { return hermite_over(twisted_data(r), Twist::gregory); }},
-        {"network", [](Random& r) { return network_over(spline_network(r, 3, 2), Twist::average); }},
-        {"network_of_isocurves",
-         [](Random& r) {
-             const Patch p = bezier_patch(r).patch;
-             return network_over(
-                 {{make_isocurve(p, Along::v, 0), make_isocurve(p, Along::v, 0.5), make_isocurve(p, Along::v, 1)},
-                  {make_isocurve(p, Along::u, 0), make_isocurve(p, Along::u, 1)}},
-                 Twist::average);
-         }},
-        {"network_zero", [](Random& r) { return network_over(spline_network(r, 1, 2), Twist::zero); }},
-        {"network_gregory", [](Random& r) { return network_over(spline_network(r, 2, 3), Twist::gregory); }},
-        {"bezier_triangle", [](Random& r) { return bezier_triangle(r, 4, false); }},
-        {"bezier_triangle_rational", [](Random& r) { return bezier_triangle(r, 3, true); }},
-        {"side_vertex_t", [](Random& r) { return side_vertex<kDelta>(r, kT); }, true, false},
-        {"side_vertex_t2", [](Random& r) { return side_vertex<kDelta>(r, kT2); }},
-        {"side_vertex_quartic", [](Random& r) { return side_vertex<kDelta>(r, kQuartic); }},
-        {"side_vertex_smooth", [](Random& r) { return side_vertex<kDelta>(r, kSmooth); }},
-        {"side_vertex_t3", [](Random& r) { return side_vertex<kDelta>(r, kT3); }},
-        {"side_vertex_rational",
-         [](Random& r) { return side_vertex(random_triangle(r, rational_cubic), Function::polynomial(kT2), kDelta); }},
-        {"side_vertex_seed_t", [](Random& r) { return side_vertex<kSeed>(r, kT); }, true, false},
-        {"side_vertex_seed_t2", [](Random& r) { return side_vertex<kSeed>(r, kT2); }},
-        {"side_vertex_seed_quartic", [](Random& r) { return side_vertex<kSeed>(r, kQuartic); }},
-        {"side_vertex_seed_smooth", [](Random& r) { return side_vertex<kSeed>(r, kSmooth); }, false},
-        {"side_vertex_seed_t3", [](Random& r) { return side_vertex<kSeed>(r, kT3); }, false},
-        {"transformed",
-         [](Random& r) {
-             Random h = r.here();
-             PatchSample s = hermite_over(twisted_data(h), Twist::gregory);
-             const Transform map = random_map(r);
-             for (auto& c : s.boundary) c = transformed(c, map);
-             return PatchSample{transformed(s.patch, map), s.boundary};
-         }},
-        {"transformed_triangle",
-         [](Random& r) {
-             Random h = r.here();
-             PatchSample s = side_vertex<kDelta>(h, kT2);
-             const Transform map = random_map(r);
-             for (auto& c : s.boundary) c = transformed(c, map);
-             return PatchSample{transformed(s.patch, map), s.boundary};
-         }},
-    };
+    static const std::vector<PatchType> list = [] {
+        std::vector<PatchType> all = quad_types();
+        for (const auto* more : {&network_types(), &triangle_types()}) all.insert(all.end(), more->begin(), more->end());
+        return all;
+    }();
     return list;
 }
 
@@ -390,6 +42,26 @@ double size_of_sample(const Curve& curve, const Point& origin) {
     return size;
 }
 
+// ---- data to build with -----------------------------------------------------------------------------------------------
+std::vector<Point> random_points(Random& r, int count) {
+    std::vector<Point> list;
+    for (int i = 0; i < count; ++i) list.push_back(r.point({0.7 * i, 0, 0}));
+    return list;
+}
+std::vector<double> random_weights(Random& r, int count) {
+    std::vector<double> list;
+    for (int i = 0; i < count; ++i) list.push_back(r.number(0.4, 2.5));
+    return list;
+}
+Grid<double> random_weights(Random& r, int rows, int columns) {
+    Grid<double> grid;
+    for (int i = 0; i < rows; ++i) grid.push_back(random_weights(r, columns));
+    return grid;
+}
+Transform random_map(Random& r) {
+    return Transform::translate(r.offset()) * Transform::mirror(r.vector() + Point{0, 0, 2}, 0.3) *
+           Transform::rotate({1, 2, 3}, r.number(0, 360)) * Transform::scale({1.5, 0.5, 2});
+}
 Curve random_cubic(Random& r, const Point& from, const Point& to) {
     return make_bezier({from, 0.7 * from + 0.3 * to + r.vector(0.5), 0.3 * from + 0.7 * to + r.vector(0.5), to});
 }
@@ -404,6 +76,30 @@ std::array<Curve, 3> random_triangle(Random& r, Curve (*between)(Random&, const 
     const Point a = r.point({2, 0, 0}, 0.3), b = r.point({0, 2, 0}, 0.3), c = r.point({0, 0, 0}, 0.3);
     const Curve e1 = between(r, b, c), e2 = between(r, c, a), e3 = between(r, a, b);
     return {e1, e2, e3};
+}
+std::array<Curve, 3> random_cross(Random& r, const std::array<Curve, 3>& e, double spread) {
+    std::vector<Curve> d;
+    for (int k = 0; k < 3; ++k) {
+        const Curve &own = e[k], &before = e[(k + 2) % 3], &after = e[(k + 1) % 3];
+        const Point first = -before.derivative(1) - 0.5 * own.derivative(0), last = after.derivative(0) + 0.5 * own.derivative(1);
+        d.push_back(make_bezier({first, 0.5 * (first + last) + r.vector(spread), last}));
+    }
+    return {d[0], d[1], d[2]};
+}
+std::array<Curve, 3> normals_of(const std::array<Curve, 3>& e, const std::array<Curve, 3>& d) {
+    std::vector<Curve> list;
+    for (int k = 0; k < 3; ++k) {
+        Point x[4], y[4], n[5]{};
+        e[k].taylor(0.0, 3, x);
+        d[k].taylor(0.0, 3, y);
+        for (int i = 0; i <= 2; ++i)
+            for (int j = 0; j <= 2; ++j) n[i + j] += (i + 1.0) * cross(x[i + 1], y[j]);
+        std::vector<Point> b(5);  // powers to Bezier
+        for (int i = 0; i <= 4; ++i)
+            for (int j = 0; j <= i; ++j) b[i] += (binomial(i, j) / binomial(4, j)) * n[j];
+        list.push_back(make_bezier(b));
+    }
+    return {list[0], list[1], list[2]};
 }
 std::vector<std::vector<Point>> random_net(Random& r, int rows, int columns) {
     std::vector<std::vector<Point>> p(rows);

@@ -1,6 +1,6 @@
 // samples.h -- one row for each type of curve and of surface: what the law tests are instantiated over.
 //
-// A new type joins every law by one row in samples.cpp. A row makes a random instance from a Random; the same seed
+// A new type joins every law by one row in samples_*.cpp. A row makes a random instance from a Random; the same seed
 // makes the same instance, and a Random with an offset makes the same instance elsewhere in space.
 #pragma once
 #include <cstdint>
@@ -49,12 +49,14 @@ const std::vector<CurveType>& curve_types();
 struct PatchSample {
     Patch patch;
     std::vector<Curve> boundary;  // by edge, along its growing parameter: what the surface promises to interpolate
+    std::vector<int> free = {};   // edges that a part of a surface does not interpolate
 };
 struct PatchType {
     const char* name;
     PatchSample (*make)(Random&);
     bool moves_with_its_data = true;  // translation invariance, which some formulas of the seeds do not have
     bool smooth_vertices = true;      // false: cone points at the vertices of the triangle
+    bool bounded_vertices = true;     // false: no bounds of derivatives over boxes that hold a vertex
 };
 const std::vector<PatchType>& patch_types();
 
@@ -78,6 +80,10 @@ Frame random_frame(Random& random, Curve (*between)(Random&, const Point&, const
 /// E1: B to C, E2: C to A, E3: A to B.
 std::array<Curve, 3> random_triangle(Random& random,
                                      Curve (*between)(Random&, const Point&, const Point&) = random_cubic);
+/// D_k of such edges that fit the tangents at the vertices; inside they are arbitrary (so are the twists).
+std::array<Curve, 3> random_cross(Random& random, const std::array<Curve, 3>& edges, double spread = 1);
+/// E_k' x D_k for cubic edges and quadratic D_k.
+std::array<Curve, 3> normals_of(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross);
 std::vector<std::vector<Point>> random_net(Random& random, int rows, int columns);
 
 }  // namespace isoparm::tests

@@ -21,7 +21,7 @@ struct AffineParameter {
         std::sort(list.begin(), list.end(), [](const Break& x, const Break& y) { return x.t < y.t; });
         return list;
     }
-    template <class S> auto operator()(const S& t) const { return curve(t * slope + offset); }
+    template <class S> auto operator()(const S& t) const { return curve(kept_in(t * slope + offset, curve.begin(), curve.end())); }
     Vec3<Polynomial> operator()(const Polynomial& t) const { return curve(t * Polynomial(slope) + Polynomial(offset)); }
 };
 

@@ -23,16 +23,11 @@ struct Coordinate {
         const auto pu = powers(u);
         const auto pv = powers(v);
         const auto pw = powers(w);
-        auto sum = (pu[degree] * pv[0]) * pw[0] * number<W>(0);
+        auto sum = (pu[degree] * pv[0]) * pw[0] * constant_for<W>(c[0]);
         std::size_t at = 1;
         for (int k = 0; k <= degree; ++k)
-            for (int j = k == 0 ? 1 : 0; j <= degree - k; ++j) sum = sum + (pu[degree - j - k] * pv[j]) * pw[k] * number<W>(at++);
+            for (int j = k == 0 ? 1 : 0; j <= degree - k; ++j) sum = sum + (pu[degree - j - k] * pv[j]) * pw[k] * constant_for<W>(c[at++]);
         return sum;
-    }
-    template <class S> auto number(std::size_t k) const {
-        if constexpr (std::is_same_v<S, Polynomial>) return Polynomial(c[k]);
-        else if constexpr (std::is_same_v<std::decay_t<decltype(base(S()))>, Interval>) return c[k];
-        else return mid(c[k]);
     }
 };
 

@@ -1,79 +1,62 @@
 // patches/boolean_sum.h -- P1 (+) P2 = P1 + P2 - P1 P2: the one construction behind every Coons surface (Gordon 1969).
 //
 // P1 interpolates across u: sum_i H_i(u) f_i(v); P2 across v: sum_j H_j(v) g_j(u); their product the corner data
-// M_ij = L_i(g_j) = L_j(f_i). A basis is an object that answers basis(t) with the array of its blends at t.
+// M_ij = L_i(g_j) = L_j(f_i). What the H_i are is the business of a basis (patches/basis.h).
 #pragma once
-#include <array>
+#include <algorithm>
 
-#include "curve.h"
+#include "patches/basis.h"
+#include "patches/tensor_bezier.h"
 
 namespace isoparm {
 
 /// Which projector a surface draws.
 enum class Part { sum, P1, P2, P1P2 };
 
-/// Weights (1-H, H) with H(0)=0, H(1)=1.
-struct BlendBasis {
-    static constexpr int size = 2;
-    Function H;
-    template <class S> std::array<S, 2> operator()(const S& t) const {
-        const S h = H(t);
-        return {1.0 - h, h};
-    }
-};
-/// Weights (1-t, t).
-struct LinearBasis {
-    static constexpr int size = 2;
-    template <class S> std::array<S, 2> operator()(const S& t) const { return {1.0 - t, t}; }
-};
-/// Cubic Hermite blends in the order value, derivative at 0, derivative, value at 1 (H1..H4 of seed 002 (3)).
-struct HermiteBasis {
-    static constexpr int size = 4;
-    template <class S> std::array<S, 4> operator()(const S& t) const {
-        static constexpr double h[4][4] = {{1, 0, -3, 2}, {0, 1, -2, 1}, {0, 0, -1, 1}, {0, 0, 3, -2}};
-        return {polynomial(h[0], 3, t), polynomial(h[1], 3, t), polynomial(h[2], 3, t), polynomial(h[3], 3, t)};
-    }
-};
-
-template <class Basis> struct BooleanSum {
-    static constexpr int n = Basis::size;
-    Basis basis;
-    std::array<Curve, n> f, g;                   // f[i](v), g[j](u)
-    std::array<std::array<Point, n>, n> corner;  // M_ij
+template <class BasisU, class BasisV = BasisU> struct BooleanSum {
+    static constexpr Domain domain = Domain::quad;
+    BasisU basis_u;
+    BasisV basis_v;
+    std::vector<Curve> f, g;  // f[i](v), g[j](u); not needed by parts that do not use them
+    Grid<Point> corner;       // M_ij
     Part part = Part::sum;
+    Rect over{};
 
-    /// Lines u = const and v = const where its curves have breaks.
-    std::vector<double> breaks_u() const { return lines(g); }
-    std::vector<double> breaks_v() const { return lines(f); }
+    Rect rect() const { return over; }
+    /// Lines u = const and v = const where the basis or the curves have breaks.
+    std::vector<double> breaks_u() const { return lines(basis_u.breaks(), g, over.u0, over.u1); }
+    std::vector<double> breaks_v() const { return lines(basis_v.breaks(), f, over.v0, over.v1); }
 
     template <class U, class V> auto operator()(const U& u, const V& v) const {
-        const auto across_u = basis(u);
-        const auto across_v = basis(v);
-        auto p1 = across_u[0] * f[0](v);
-        auto p2 = across_v[0] * g[0](u);
-        const auto corners = [&](int i) {
-            auto row = across_v[0] * corner[i][0];
-            for (int j = 1; j < n; ++j) row = row + across_v[j] * corner[i][j];
-            return row;
+        const auto across_u = basis_u(u);
+        const auto across_v = basis_v(v);
+        const auto p1 = [&] { return sum_of(across_u, [&](std::size_t i) { return f[i](v); }); };
+        const auto p2 = [&] { return sum_of(across_v, [&](std::size_t j) { return g[j](u); }); };
+        const auto p12 = [&] {
+            return sum_of(across_u, [&](std::size_t i) { return sum_of(across_v, [&](std::size_t j) { return corner[i][j]; }); });
         };
-        auto p12 = across_u[0] * corners(0);
-        for (int i = 1; i < n; ++i) {
-            p1 = p1 + across_u[i] * f[i](v);
-            p2 = p2 + across_v[i] * g[i](u);
-            p12 = p12 + across_u[i] * corners(i);
-        }
+        using Value = decltype(p12());
         switch (part) {
-            case Part::P1: return p1;
-            case Part::P2: return p2;
-            case Part::P1P2: return p12;
-            default: return p1 + p2 - p12;
+            case Part::P1: return Value(p1());
+            case Part::P2: return Value(p2());
+            case Part::P1P2: return p12();
+            default: return Value(p1() + p2() - p12());
         }
     }
 
 private:
-    static std::vector<double> lines(const std::array<Curve, n>& curves) {
-        std::vector<double> list;
-        for (const Break& b : breaks_of(curves)) list.push_back(b.t);
+    template <class Blends, class Data> static auto sum_of(const Blends& blends, const Data& data) {
+        auto sum = blends.weights[0] * data(blends.first);
+        for (std::size_t k = 1; k < blends.weights.size(); ++k) sum = sum + blends.weights[k] * data(blends.first + k);
+        return sum;
+    }
+    static std::vector<double> lines(std::vector<double> list, const std::vector<Curve>& curves, double begin, double end) {
+        const std::size_t nodes = list.size();
+        for (const double b : break_parameters(curves)) {
+            const auto near = [&](double t) { return std::abs(t - b) <= break_rounding * (end - begin); };
+            if (begin < b && b < end && std::none_of(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(nodes), near)) list.push_back(b);
+        }
+        std::sort(list.begin(), list.end());
         return list;
     }
 };

@@ -17,7 +17,7 @@ struct ControlFrame {
     SplineCurve c0, c1, d0, d1;
 };
 /// Net between the polygons, blended at the Greville abscissae, so that its surface is the bilinear Coons patch of the curves.
-/// Opposite curves have the same degree and knots. Throws IncompatibleError, Error(input).
+/// Opposite curves have the same degree and knots; the surface is over [0,1]^2. Throws IncompatibleError, Error(input).
 Grid<Point> coons_net(const ControlFrame& frame);
 Patch make_control_net(const ControlFrame& frame);
 }

@@ -14,7 +14,11 @@ struct GordonNetwork {
 };
 /// lagrange: polynomial blends through all nodes; hermite: C1 hats, so that a curve acts between its neighbours only.
 enum class GordonBlend { lagrange, hermite };
-/// Curves of a family run over the domain that they share when it holds the nodes, else from the first node to the last.
+/// The curves of a family as the surface runs them: over the domain that they share when it holds the nodes, else from the first
+/// node to the last.
+std::vector<Curve> run_over_nodes(const std::vector<Curve>& curves, const std::vector<double>& nodes);
+
+/// Over the domain of the curves so run; with hats, which end with the nodes, over [first node, last node].
 /// Throws IncompatibleError where u_curves[j](u_nodes[i]) and v_curves[i](v_nodes[j]) differ, Error(input) for other faults.
 Patch make_gordon(const GordonNetwork& network, GordonBlend blend = GordonBlend::lagrange, Part part = Part::sum);
 }

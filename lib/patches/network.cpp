@@ -1,47 +1,27 @@
 #include "patches/network.h"
 
-#include <algorithm>
-#include <cmath>
-
+#include "curves/hermite.h"
 #include "curves/modify.h"
-#include "patch_model.h"
 #include "patches/compatibility.h"
-#include "patches/hermite_patch.h"
+#include "patches/hermite_surface.h"
 
 namespace isoparm {
 namespace {
 
-struct NetworkPatch {
-    static constexpr Domain domain = Domain::quad;
-    int m, n;
-    std::vector<HermitePatch> cells;  // cell (i,j) = cells[i * n + j], over [i,i+1] x [j,j+1]
-    std::vector<double> lines_u, lines_v;  // the borders of the cells, and breaks of the curves inside them
-    std::vector<double> inner_u = inner(m), inner_v = inner(n);
+std::string name(const char* family, std::size_t k) { return std::string(family) + "[" + std::to_string(k) + "]"; }
 
-    static std::vector<double> inner(int count) {
-        std::vector<double> list;
-        for (int k = 1; k < count; ++k) list.push_back(k);
-        return list;
-    }
-    static std::vector<double> with_breaks(int count, const std::vector<Curve>& curves) {
-        std::vector<double> list = inner(count);
-        for (const Break& b : breaks_of(curves))
-            if (std::abs(b.t - std::round(b.t)) > break_rounding * count) list.push_back(b.t);
-        std::sort(list.begin(), list.end());
-        return list;
-    }
-    Rect rect() const { return {0, double(m), 0, double(n)}; }
-    std::vector<double> breaks_u() const { return lines_u; }
-    std::vector<double> breaks_v() const { return lines_v; }
+/// The network with its curves run over [0,n] and [0,m].
+Network over_nodes(const Network& network) {
+    if (network.a.size() < 2 || network.b.size() < 2)
+        throw_input("found " + std::to_string(network.a.size()) + " curves a and " + std::to_string(network.b.size()) + " curves b, expected at least two of each");
+    Network n;
+    for (const auto& c : network.a) n.a.push_back(reparametrized(c, 0, double(network.b.size() - 1)));
+    for (const auto& c : network.b) n.b.push_back(reparametrized(c, 0, double(network.a.size() - 1)));
+    return n;
+}
 
-    template <class U, class V> auto operator()(const U& u, const V& v) const {
-        const std::size_t i = cell_of(inner_u, u), j = cell_of(inner_v, v);
-        return cells[i * n + j](u - double(i), v - double(j));
-    }
-};
-
-/// Cross derivatives of a family of curves r(0,.), ..., r(m,.) by the differences (6.25).
-std::vector<Curve> cross_derivatives(const std::vector<Curve>& r) {
+/// x_u(i,.) of the curves r(0,.), ..., r(m,.) by the differences (6.25).
+std::vector<Curve> differences(const std::vector<Curve>& r) {
     const std::size_t m = r.size() - 1;
     if (m == 1) return {linear_combination({-1, 1}, r), linear_combination({-1, 1}, r)};
     std::vector<Curve> d;
@@ -51,47 +31,73 @@ std::vector<Curve> cross_derivatives(const std::vector<Curve>& r) {
     return d;
 }
 
+/// The curve's derivative at t, which must be the same from both sides.
+Point tangent(const Curve& c, double t, const std::string& name, double size) {
+    const Point right = c.derivative(t);
+    if (t > c.begin() && t < c.end())
+        require_equal("C1: the tangents of " + name + " from both sides at " + to_text(t), -reversed(c).derivative(c.begin() + (c.end() - t)), right, size + length(right));
+    return right;
+}
+
+void require_c1(const std::vector<Curve>& curves, const char* family) {
+    for (std::size_t k = 0; k < curves.size(); ++k)
+        for (const Break& b : curves[k].breaks())
+            if (b.continuity < 1) tangent(curves[k], b.t, name(family, k), size_of({&curves[k]}));
+}
+
+Patch make(const Network& net, const CrossDerivatives& cross, Twist twist, bool tangents_agree, Part part) {
+    HermiteNetwork h;
+    for (std::size_t i = 0; i < net.a.size(); ++i) h.f.push_back(net.a[i]), h.f.push_back(reparametrized(cross.A[i], 0, double(net.b.size() - 1)));
+    for (std::size_t j = 0; j < net.b.size(); ++j) h.g.push_back(net.b[j]), h.g.push_back(reparametrized(cross.B[j], 0, double(net.a.size() - 1)));
+    h.name = [](char family, std::size_t k) {
+        return name(family == 'f' ? (k % 2 ? "A" : "a") : (k % 2 ? "B" : "b"), k / 2);
+    };
+    return make_patch(hermite_surface(h, twist, tangents_agree, part));
+}
+
 }  // namespace
 
-Patch make_network(const Network& network, Twist twist) {
-    const std::size_t m = network.a.size() - 1, n = network.b.size() - 1;
-    if (network.a.size() < 2 || network.b.size() < 2)
-        throw_input("found " + std::to_string(network.a.size()) + " curves a and " + std::to_string(network.b.size()) + " curves b, expected at least two of each");
-    std::vector<Curve> a, b;
-    for (const auto& c : network.a) a.push_back(reparametrized(c, 0, double(n)));
-    for (const auto& c : network.b) b.push_back(reparametrized(c, 0, double(m)));
-    const double size = std::max(size_of({&a.front(), &a.back()}), size_of({&b.front(), &b.back()}));
-    for (std::size_t i = 0; i <= m; ++i)
-        for (std::size_t j = 0; j <= n; ++j)
-            require_equal("a[" + std::to_string(i) + "](" + std::to_string(j) + ") = b[" + std::to_string(j) + "](" + std::to_string(i) + ")", a[i](double(j)),
-                          b[j](double(i)), size);
+CrossDerivatives finite_differences(const Network& network) {
+    const Network net = over_nodes(network);
+    return {differences(net.a), differences(net.b)};
+}
 
-    const auto A = cross_derivatives(a), B = cross_derivatives(b);
-    NetworkPatch patch{int(m), int(n), {}, NetworkPatch::with_breaks(int(m), b), NetworkPatch::with_breaks(int(n), a)};
-    for (std::size_t i = 0; i < m; ++i)
-        for (std::size_t j = 0; j < n; ++j) {
-            const auto along_v = [&](const Curve& c) { return segment(c, double(j), double(j + 1)); };
-            const auto along_u = [&](const Curve& c) { return segment(c, double(i), double(i + 1)); };
-            const std::array<Curve, 4> f{along_v(a[i]), along_v(A[i]), along_v(A[i + 1]), along_v(a[i + 1])};
-            const std::array<Curve, 4> g{along_u(b[j]), along_u(B[j]), along_u(B[j + 1]), along_u(b[j + 1])};
-            // The corner data are the differences, not the tangents of the curves: only so are the curves interpolated.
-            std::array<std::array<Point, 4>, 4> M;
-            std::array<std::array<Point, 2>, 2> jump{};
-            for (int p = 0; p < 2; ++p)
-                for (int q = 0; q < 2; ++q) {
-                    const int value_u = p == 0 ? 0 : 3, der_u = p == 0 ? 1 : 2, value_v = q == 0 ? 0 : 3, der_v = q == 0 ? 1 : 2;
-                    const Point twist_a = f[der_u].derivative(q), twist_b = g[der_v].derivative(p);
-                    if (twist == Twist::compatible)
-                        require_equal("twist at (" + std::to_string(i + p) + "," + std::to_string(j + q) + ")", twist_a, twist_b, size + length(twist_a));
-                    M[value_u][value_v] = f[value_u](q);
-                    M[der_u][value_v] = f[der_u](q);
-                    M[value_u][der_v] = g[der_v](p);
-                    M[der_u][der_v] = twist == Twist::average ? 0.5 * (twist_a + twist_b) : twist == Twist::zero ? Point{} : twist_b;
-                    if (twist == Twist::gregory) jump[p][q] = twist_a - twist_b;
-                }
-            patch.cells.push_back({{HermiteBasis{}, f, g, M, Part::sum}, jump});
+CrossDerivatives from_twists(const Network& network, const Grid<Point>& d) {
+    const Network net = over_nodes(network);
+    const std::size_t m = net.a.size() - 1, n = net.b.size() - 1;
+    if (d.size() != m + 1) throw_input("found twists for " + std::to_string(d.size()) + " curves a, expected " + std::to_string(m + 1));
+    for (const auto& row : d)
+        if (row.size() != n + 1) throw_input("found a row of " + std::to_string(row.size()) + " twists, expected one for each of the " + std::to_string(n + 1) + " curves b");
+    const double size = std::max(size_of({&net.a.front(), &net.a.back()}), size_of({&net.b.front(), &net.b.back()}));
+    CrossDerivatives cross;
+    for (std::size_t i = 0; i <= m; ++i) {
+        std::vector<Point> values;
+        for (std::size_t j = 0; j <= n; ++j) values.push_back(tangent(net.b[j], double(i), name("b", j), size));
+        cross.A.push_back(make_hermite(values, d[i]));
+    }
+    for (std::size_t j = 0; j <= n; ++j) {
+        std::vector<Point> values, twists;
+        for (std::size_t i = 0; i <= m; ++i) {
+            values.push_back(tangent(net.a[i], double(j), name("a", i), size));
+            twists.push_back(d[i][j]);
         }
-    return make_patch(std::move(patch));
+        cross.B.push_back(make_hermite(values, twists));
+    }
+    return cross;
+}
+
+Patch make_network(const Network& network, Twist twist, Part part) {
+    return make(over_nodes(network), finite_differences(network), twist, false, part);
+}
+
+Patch make_network(const Network& network, const CrossDerivatives& cross, Twist twist, Part part) {
+    const Network net = over_nodes(network);
+    if (cross.A.size() != net.a.size() || cross.B.size() != net.b.size())
+        throw_input("found " + std::to_string(cross.A.size()) + " cross derivatives A and " + std::to_string(cross.B.size()) + " B, expected one for each of the " +
+                    std::to_string(net.a.size()) + " curves a and " + std::to_string(net.b.size()) + " curves b");
+    require_c1(cross.A, "A");
+    require_c1(cross.B, "B");
+    return make(net, cross, twist, true, part);
 }
 
 }  // namespace isoparm

@@ -20,9 +20,9 @@ CrossDerivatives finite_differences(const Network& network);
 /// C1 cubics with A_i(j) = b_j'(i), B_j(i) = a_i'(j) and the twists A_i'(j) = B_j'(i) = d[i][j] (seed 002 section 4).
 CrossDerivatives from_twists(const Network& network, const Grid<Point>& d);
 
-/// Throws IncompatibleError when a[i](j) and b[j](i) differ, and for cross derivatives that contradict the tangents of the curves
-/// (finite differences may: then they give the corner data, and the curves are still interpolated); Error(input) when there are fewer than two curves
-/// of a kind or lists of different length.
+/// Throws IncompatibleError when a[i](j) and b[j](i) differ, and for cross derivatives that have corners or contradict the tangents of
+/// the curves (finite differences may: they give the corner data, and the curves are still interpolated); Error(input) when there are
+/// fewer than two curves of a kind or lists of different length.
 Patch make_network(const Network& network, Twist twist = Twist::average, Part part = Part::sum);
 Patch make_network(const Network& network, const CrossDerivatives& cross, Twist twist = Twist::average, Part part = Part::sum);
 }

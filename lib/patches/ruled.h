@@ -1,10 +1,8 @@
-// patches/ruled.h -- ruled surface (1-v) c0(u) + v c1(u), and the cone over a curve (formula sheet A2).
+// patches/ruled.h -- ruled surface (1-v) c0(u) + v c1(u) (formula sheet A2).
 #pragma once
 #include "patch.h"
 
 namespace isoparm {
 /// Both curves are run over [0,1].
 Patch make_ruled(const Curve& c0, const Curve& c1);
-/// (1-v) curve(u) + v apex; the edge v = 1 is the apex.
-Patch make_cone(const Curve& curve, const Point& apex);
 }

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "patch_model.h"
-#include "patches/compatibility.h"
+#include "patches/triangle_edges.h"
 #include "scalar/cone.h"
 
 namespace isoparm {
@@ -23,27 +23,49 @@ struct SideVertex {
     Point A, B, C;
     Function H;
     SideVertexForm form;
+    SideVertexPart part;
 
     template <class U, class V, class W> auto operator()(const U& u, const V& v, const W& w) const {
-        if (form == SideVertexForm::delta)
-            return (u * A + v * B + w * C) + cone(H, Bulge{E[0], B, C}, w, v) + cone(H, Bulge{E[1], C, A}, u, w) + cone(H, Bulge{E[2], A, B}, v, u);
-        return cone(H, E[1], u, w) + cone(H, E[2], v, u) + cone(H, E[0], w, v) - (H(u) * A + H(v) * B + H(w) * C);
+        return form == SideVertexForm::delta ? delta(u, v, w) : seed(u, v, w);
+    }
+    template <class U, class V, class W> auto delta(const U& u, const V& v, const W& w) const {
+        const auto plane = u * A + v * B + w * C;
+        const auto bent1 = [&] { return cone(H, Bulge{E[0], B, C}, w, v); };
+        const auto bent2 = [&] { return cone(H, Bulge{E[1], C, A}, u, w); };
+        const auto bent3 = [&] { return cone(H, Bulge{E[2], A, B}, v, u); };
+        switch (part) {
+            case SideVertexPart::s1: return plane + bent2();
+            case SideVertexPart::s2: return plane + bent3();
+            case SideVertexPart::s3: return plane + bent1();
+            case SideVertexPart::s4: return plane;
+            default: return plane + bent1() + bent2() + bent3();
+        }
+    }
+    template <class U, class V, class W> auto seed(const U& u, const V& v, const W& w) const {
+        using Sum = decltype(u * A + v * B + w * C);
+        switch (part) {
+            case SideVertexPart::s1: return Sum(cone(H, E[1], u, w) + H(v) * B);
+            case SideVertexPart::s2: return Sum(cone(H, E[2], v, u) + H(w) * C);
+            case SideVertexPart::s3: return Sum(cone(H, E[0], w, v) + H(u) * A);
+            case SideVertexPart::s4: return Sum(H(u) * A + H(v) * B + H(w) * C);
+            default: return Sum(cone(H, E[1], u, w) + cone(H, E[2], v, u) + cone(H, E[0], w, v) - (H(u) * A + H(v) * B + H(w) * C));
+        }
     }
 };
 
 }  // namespace
 
-Patch make_side_vertex(const std::array<Curve, 3>& edges, const Function& H, SideVertexForm form) {
-    const std::array<Curve, 3> E{reparametrized(edges[0], 0, 1), reparametrized(edges[1], 0, 1), reparametrized(edges[2], 0, 1)};
-    const double size = size_of({&E[0], &E[1], &E[2]});
-    require_equal("E1(1) = E2(0) (vertex C)", E[0](1), E[1](0), size);
-    require_equal("E2(1) = E3(0) (vertex A)", E[1](1), E[2](0), size);
-    require_equal("E3(1) = E1(0) (vertex B)", E[2](1), E[0](0), size);
+Patch make_side_vertex(const std::array<Curve, 3>& edges, const Function& H, SideVertexForm form, SideVertexPart part) {
+    const TriangleEdges t(edges);
     // No rounding here: H(0) is how far the surface is torn at a vertex, and cone() takes it for 0.
     constexpr double nothing = std::numeric_limits<double>::min();
     if (const double gap = std::abs(H(0)); !(gap <= nothing)) throw IncompatibleError("H(0) = 0", gap, nothing);
+    // Nor may H jump there: next to 0 it is as small as the interval shows it to be.
+    Interval near;
+    H.taylor(Interval(0, 1e-300), 0, &near);
+    if (const double gap = mag(near); !(gap <= 1e-12)) throw IncompatibleError("H(t) -> 0 for t -> 0", gap, 1e-12);
     if (const double gap = std::abs(H(1) - 1); !(gap <= 1e-12)) throw IncompatibleError("H(1) = 1", gap, 1e-12);
-    return make_patch(SideVertex{E, E[2](0), E[0](0), E[1](0), H, form});
+    return make_patch(SideVertex{t.E, t.V[0], t.V[1], t.V[2], H, form, part});
 }
 
 }  // namespace isoparm

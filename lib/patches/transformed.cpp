@@ -28,6 +28,10 @@ public:
         patch_.points(n, u, v, out);
         for (std::size_t i = 0; i < n; ++i) out[i] = map_.point(out[i]);
     }
+    void frames(std::size_t n, const double* u, const double* v, PointFrame* out) const override {
+        patch_.frames(n, u, v, out);
+        for (std::size_t i = 0; i < n; ++i) out[i] = moved(map_, out[i]);
+    }
     Enclosure enclose(const Box& box) const override {
         Enclosure e = patch_.enclose(box);
         e.centre = moved(map_, e.centre);

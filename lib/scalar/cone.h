@@ -5,7 +5,8 @@
 // theta = o da - tau db, K = H/r, K' = (H' - K)/r,
 //     dF = H' s g + K theta g',     ddF = H'' s^2 g + 2 K' s theta g' + (K/r) theta^2 g''
 // where K lies in H'([0,r]), K' in H''([0,r])/2 and, when H'(0) = 0, K/r in H''([0,r])/2. Derivatives that depend on the
-// direction of approach do not exist at r = 0: NaN for numbers, their range (or all()) over intervals.
+// direction of approach do not exist at r = 0: NaN for numbers, their range (or all()) over intervals. H must tend to 0, and answer at 0
+// with the piece to its right.
 #pragma once
 #include <limits>
 
@@ -33,6 +34,12 @@ inline Pack divisor(const Pack& r) {
     return each_lane(r, [](double x) { return x == 0 ? 1.0 : x; });
 }
 inline Interval divisor(const Interval& r) { return r; }
+
+/// H'(0) = 0: exactly at the point, and next to it, in case H answers at 0 with another piece than that to the right.
+template <class HF> bool is_flat(const HF& H) {
+    const Interval at = H(variable_u<Interval, 1>(Interval(0))).c[1], after = H(variable_u<Interval, 1>(Interval(0, 1e-300))).c[1];
+    return at.lo == 0 && at.hi == 0 && mag(after) <= 1e-100;
+}
 
 template <class A, class B> struct Joined;
 template <class T, int I1, int J1, int I2, int J2, int N> struct Joined<Jet<T, I1, J1, N>, Jet<T, I2, J2, N>> {
@@ -102,12 +109,18 @@ template <class HF, class G, class A, class B> auto cone(const HF& H, const G& g
     }
     auto result = H(r) * g(tau);
     using C = Components<decltype(result)>;
+    if constexpr (std::is_same_v<T, Pack>) {  // derivatives at r = 0 are for numbers and intervals only
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        for (int lane = 0; lane < Pack::lanes; ++lane)
+            if (r.c[0][lane] == 0)
+                for (int i = 0; i < C::count; ++i)
+                    for (int k = 1; k < R::size; ++k) C::get(result, i).c[k].set(lane, none);
+    }
     if constexpr (std::is_same_v<T, Interval> || std::is_same_v<T, double>) {
         if constexpr (std::is_same_v<T, double>)
             if (r.c[0] != 0) return result;
         constexpr int M = 2;
-        const Interval slope = H(variable_u<Interval, 1>(Interval(0))).c[1];
-        const bool flat = slope.lo == 0 && slope.hi == 0;  // K/r is bounded
+        const bool flat = N < M || is_flat(H);  // K/r is bounded
         double size = 0;                                   // of g: what its rounding is relative to
         if constexpr (requires { g.size(); }) size = g.size();
         const auto closed = [&](const T& radius, const T& at, auto& out) {
@@ -158,6 +171,14 @@ template <class HF, class G, class A, class B> auto cone(const HF& H, const G& g
     }
     return result;
 }
+
+/// r^2 and tau^2 (1 - tau): cone(SquareOfRadius{}, GregoryRatio{}, a, b) = a^2 b / (a + b).
+struct SquareOfRadius {
+    template <class S> S operator()(const S& r) const { return square(r); }
+};
+struct GregoryRatio {
+    template <class S> S operator()(const S& tau) const { return square(tau) * (1.0 - tau); }
+};
 
 /// Not a polynomial in general.
 template <class HF, class G> auto cone(const HF&, const G& g, const Polynomial&, const Polynomial&) {

@@ -163,6 +163,29 @@ inline Truth decide(Comparison how, const Interval& a, const Interval& b, bool t
     }
 }
 
+/// The same for a choice that is continuous. Where x = y at a point, what holds just to its right: x and y are then jets of one
+/// variable that grows, and the first coefficient in which they differ decides.
+template <int I, int J, int N> bool decide_after(Comparison how, const Jet<double, I, J, N>& x, const Jet<double, I, J, N>& y) {
+    for (int k = 0; k < x.size; ++k)
+        if (x.c[k] != y.c[k]) return compared(how, x.c[k], y.c[k]);
+    return compared(how, 0.0, 0.0);
+}
+template <int I, int J, int N> auto decide_after(Comparison how, const Jet<Pack, I, J, N>& x, const Jet<Pack, I, J, N>& y) {
+    auto yes = compared(how, x.c[0].v, y.c[0].v);
+    for (int k = x.size - 1; k >= 0; --k) {
+        const auto differ = x.c[k].v != y.c[k].v;
+        yes = (differ & compared(how, x.c[k].v, y.c[k].v)) | (~differ & yes);
+    }
+    return yes;
+}
+template <int I, int J, int N> Truth decide_after(Comparison how, const Jet<Interval, I, J, N>& x, const Jet<Interval, I, J, N>& y) {
+    const auto same = [](const Interval& a, const Interval& b) { return a.lo == b.lo && a.hi == b.hi && a.lo == a.hi; };
+    for (int k = 0; k < x.size; ++k)
+        if (!same(x.c[k], y.c[k])) return decide(how, x.c[k], y.c[k], k == 0);
+    return compared(how, 0.0, 0.0) ? Truth::yes : Truth::no;
+}
+inline bool decide_after(Comparison how, double x, double y) { return compared(how, x, y); }
+
 template <class T> T choose(bool c, const T& a, const T& b) { return c ? a : b; }
 template <class Mask, int I, int J, int N>
 Jet<Pack, I, J, N> choose(const Mask& c, Jet<Pack, I, J, N> a, const Jet<Pack, I, J, N>& b) {
@@ -186,7 +209,7 @@ template <class S> S choose(Comparison how, const S& x, const S& y, const S& a, 
     if constexpr (std::is_same_v<S, Polynomial>) {
         return Polynomial::nothing();
     } else {
-        const auto c = decide(how, base(x), base(y), continuous);
+        const auto c = continuous ? decide_after(how, x, y) : decide(how, base(x), base(y), false);
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(c)>, Truth>) return choose(c, a, b, continuous);
         else return choose(c, a, b);
     }

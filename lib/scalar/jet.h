@@ -95,6 +95,17 @@ inline const Interval& base(const Interval& x) { return x; }
 inline const Pack& base(const Pack& x) { return x; }
 template <class T, int I, int J, int N> const T& base(const Jet<T, I, J, N>& x) { return x.c[0]; }
 
+/// The value brought back into [low, high], where only rounding can have put it outside; derivatives stay.
+inline double kept_in(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
+inline Interval kept_in(const Interval& x, double low, double high) { return clip(x, {low, high}); }
+inline Pack kept_in(const Pack& x, double low, double high) {
+    return each_lane(x, [&](double lane) { return kept_in(lane, low, high); });
+}
+template <class T, int I, int J, int N> Jet<T, I, J, N> kept_in(Jet<T, I, J, N> x, double low, double high) {
+    x.c[0] = kept_in(x.c[0], low, high);
+    return x;
+}
+
 // ---- arithmetic -----------------------------------------------------------------------------------------------------
 template <class T, int I1, int J1, int I2, int J2, int N>
 auto operator+(const Jet<T, I1, J1, N>& a, const Jet<T, I2, J2, N>& b) {

@@ -15,7 +15,12 @@ double binomial(int n, int k);
 /// Taylor coefficients out[0..order] at t of sum c[k] t^k. Over an interval: centred form, so no dependency is lost
 /// between the powers of t.
 template <class T> void polynomial_taylor(const double* c, int degree, const T& t, int order, T* out) {
-    std::vector<T> a(c, c + degree + 1);
+    constexpr int usual = 7;
+    T few[usual + 1];
+    std::vector<T> many;
+    T* a = few;
+    if (degree > usual) many.resize(static_cast<std::size_t>(degree) + 1), a = many.data();
+    for (int i = 0; i <= degree; ++i) a[i] = T(c[i]);
     for (int k = 0; k <= order; ++k) {  // repeated synthetic division
         out[k] = T(0.0);
         if (k > degree) continue;
@@ -135,6 +140,13 @@ void Polynomial::jets(double centre_u, double centre_v, const Interval& u, const
         const double widen = 1 + (terms + p_ + q_ + 8) * 0x1p-52, tiny = (terms + 1) * rounding::kTiny;
         over->c[k] = terms > 0 ? first + checked(lo * widen - tiny, hi * widen + tiny) : first;
     }
+}
+
+/// A number known to lie in x, for a formula that runs on S: x itself where S keeps enclosures, its middle elsewhere.
+template <class S> auto constant_for(const Interval& x) {
+    if constexpr (std::is_same_v<S, Polynomial>) return Polynomial(x);
+    else if constexpr (std::is_same_v<std::remove_cvref_t<decltype(base(std::declval<S>()))>, Interval>) return x;
+    else return mid(x);
 }
 
 }  // namespace isoparm

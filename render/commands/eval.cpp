@@ -14,6 +14,7 @@ constexpr const char* kHelp = R"(usage: isoparm eval SCENE --surface S --at u,v 
 
 Position, first and second derivatives, unit normal and curvatures of a surface. At poles and apexes the normal is the
 limit from inside, if there is one; what does not exist is "none" (null in JSON), never NaN.
+On a line where derivatives jump (between the cells of a network, at a knot), they are those of the cell with the greater parameters.
 
 --surface S       a surface of the scene, or one patch of it, as in teapot/teapot#7; may be left out when there is one
 --at u,v          a point of the domain; on a triangle u,v >= 0, u+v <= 1, and derivatives are along u and v with

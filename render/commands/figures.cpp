@@ -86,6 +86,7 @@ int run(const std::vector<std::string>& arguments) {
     for (const auto& [name, file] : scenes) {
         const int figure = guarded([&, &name = name, &file = file] {
             const Scene scene = load_scene(file.string());
+            if (!options.quiet()) print_notes(scene);
             finite_diagonal(scene, bounding_box(scene));
             const Picture picture = [&] {
                 ProgressBar bar(name, options.quiet());

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kHelp = R"(usage: isoparm info SCENE [--json] [--set PARAMETER=NUMBER]
 
 Tells what is in a scene: curves with their degrees and domains, surfaces with their patches, parameters and their
-values, the bounding box of what is drawn, and the tolerance.
+values, what was repaired, the bounding box of what is drawn, and the tolerance.
 
 --json            for programs
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
@@ -60,6 +60,8 @@ void print_text(std::ostream& out, const Scene& scene) {
         if (s.patches.size() == 1) out << ", (u,v) in " << domain_of(s.patches[0].patch) << "\n";
         else out << ", " << s.patches.size() << " patches: " << s.patches.front().name << " ... " << s.patches.back().name << "\n";
     }
+    if (!scene.notes.empty()) out << "\nnotes\n";
+    for (const std::string& note : scene.notes) out << "  " << note << "\n";
     const Bounds box = bounding_box(scene);
     const auto row = [&](const Point& p) { out << "  " << to_text(p.x) << " " << to_text(p.y) << " " << to_text(p.z) << "\n"; };
     out << "\nbounding box of what is drawn (sampled), diagonal " << to_text(box.diagonal()) << "\n";
@@ -90,7 +92,7 @@ void print_json(std::ostream& out, const Scene& scene) {
                return "{\"name\": " + json_text(s.name) + ", \"type\": " + json_text(s.type) + ", \"detail\": " + json_text(s.detail) + ", \"patches\": [" +
                       joined(s.patches, [](const Member& m) { return "{\"name\": " + json_text(m.name) + ", \"domain\": " + json_text(domain_of(m.patch)) + "}"; }) + "]}";
            })
-        << "],\n \"bounding_box\": {\"low\": " << json_text(box.low) << ", \"high\": " << json_text(box.high) << ", \"diagonal\": " << json_text(box.diagonal())
+        << "],\n \"notes\": [" << joined(scene.notes, [](const std::string& note) { return json_text(note); }) << "],\n \"bounding_box\": {\"low\": " << json_text(box.low) << ", \"high\": " << json_text(box.high) << ", \"diagonal\": " << json_text(box.diagonal())
         << "},\n \"objects\": " << scene.objects.size() << ", \"tolerance\": " << json_text(tolerance_text(scene.tolerance)) << "}\n";
 }
 

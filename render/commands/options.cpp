@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
 #include "error.h"
@@ -104,7 +105,7 @@ const std::string& Options::scene_path() const {
     if (words_.size() != 1) fail("found " + std::to_string(words_.size()) + " file names, expected one scene");
     return words_.front();
 }
-Scene Options::scene() const {
+Scene Options::scene(const std::map<std::string, double>& more) const {
     const std::string& path = scene_path();
     std::map<std::string, double> parameters;
     for (const std::string& set : values("--set")) {
@@ -112,7 +113,14 @@ Scene Options::scene() const {
         if (equals == std::string::npos || equals == 0) fail("--set: found " + quoted(set) + ", expected PARAMETER=NUMBER");
         parameters[set.substr(0, equals)] = parse_number("--set " + set.substr(0, equals), set.substr(equals + 1));
     }
-    return load_scene(path, parameters);
+    for (const auto& [name, value] : more) parameters[name] = value;
+    Scene scene = load_scene(path, parameters);
+    if (!quiet()) print_notes(scene);
+    return scene;
+}
+
+void print_notes(const Scene& scene) {
+    for (const std::string& note : scene.notes) std::fprintf(stderr, "isoparm: note: %s\n", note.c_str());
 }
 
 Tolerance parse_tolerance(const std::string& text) {

@@ -36,8 +36,9 @@ public:
     std::string word(const std::string& name, const std::vector<std::string>& words) const;
 
     const std::vector<std::string>& words() const { return words_; }
-    /// The scene named by the one word of the command line, with its --set parameters.
-    Scene scene() const;
+    /// The scene named by the one word of the command line, with its --set parameters; those in `more` count instead. Its notes go
+    /// to stderr.
+    Scene scene(const std::map<std::string, double>& more = {}) const;
     /// Its path; not one word is an error.
     const std::string& scene_path() const;
     bool quiet() const { return has("--quiet"); }
@@ -54,6 +55,9 @@ private:
 
 /// "1e-3" scene units, "1e-4rel" of the bounding-box diagonal, "0.25px" of the picture. Throws Error(usage).
 Tolerance parse_tolerance(const std::string& text);
+
+/// Notes of a scene, on stderr.
+void print_notes(const Scene& scene);
 
 /// The patches of one surface ("S"), or one of them ("S/member"). Throws Error(usage) that lists what there is.
 Composite find_patches(const Scene& scene, const std::string& name);

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "commands/frames.h"
 #include "commands/output.h"
 #include "commands/render_options.h"
 #include "progress.h"
@@ -22,27 +23,39 @@ surfaces. The same scene gives the same bytes, for every number of threads and a
 --crop x0,y0,x1,y1  only these pixels, x0 <= x < x1, y0 <= y < y1, y down
 --reproducible    no dates or host names in the file, which is the case anyway
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
+--frames N        N pictures, 2 to 10000; IMAGE then holds %d or %04d, which is replaced by 0, 1, ... N-1
+--animate p=A:B   the parameter p goes from A in the first frame to B in the last, evenly; --animate p goes from its min
+                  to its max. May be repeated. Cameras that fit have all frames in the picture
 --quiet           no messages; --threads N  at most N threads
 Not built yet: --exact, --aov.
 )";
 
-int run(const std::vector<std::string>& arguments) {
-    const Options options("render", arguments,
-                          {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}, {"--crop", true}, {"--set", true}, {"--reproducible", false},
-                           {"--exact", false, "rays are traced against certified meshes"}, {"--aov", true, "only the picture itself is written"}});
-    const std::string output = options.required("-o", "the image file to write");
-    RenderOptions how = read_render_options(options);
-    check_image_path(output);
-    check_outputs(options, {{"-o", output}}, {{"SCENE", options.scene_path()}});
-    const Scene scene = options.scene();
+void render_one(const Scene& scene, const std::string& output, RenderOptions how, bool quiet) {
     finite_diagonal(scene, bounding_box(scene));
     const Picture picture = [&] {
-        ProgressBar bar("rendering", options.quiet());
+        ProgressBar bar("rendering", quiet);
         how.progress = std::ref(bar);
         return render(scene, how);
     }();
     write_image(output, picture.image, metadata_of(scene, picture));
-    if (!options.quiet()) std::fprintf(stderr, "%s: %s\n", output.c_str(), summary_of(picture).c_str());
+    if (!quiet) std::fprintf(stderr, "%s: %s\n", output.c_str(), summary_of(picture).c_str());
+}
+
+int run(const std::vector<std::string>& arguments) {
+    const Options options("render", arguments,
+                          {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}, {"--crop", true}, {"--set", true}, {"--reproducible", false}, {"--frames", true}, {"--animate", true},
+                           {"--exact", false, "rays are traced against certified meshes"}, {"--aov", true, "only the picture itself is written"}});
+    const std::string output = options.required("-o", "the image file to write");
+    RenderOptions how = read_render_options(options);
+    if (options.has("--frames") || options.has("--animate")) {
+        const auto frames = frames_of(options, output);
+        how.also_fit = points_of(frames, options);
+        for (const Frame& f : frames) render_one(options.scene(f.parameters), f.path, how, options.quiet());
+        return kSuccess;
+    }
+    check_image_path(output);
+    check_outputs(options, {{"-o", output}}, {{"SCENE", options.scene_path()}});
+    render_one(options.scene(), output, how, options.quiet());
     return kSuccess;
 }
 

@@ -1,4 +1,4 @@
-// curve_laws_test.cpp -- what every curve type must satisfy. New types: one row in samples.cpp.
+// curve_laws_test.cpp -- what every curve type must satisfy. New types: one row in samples_*.cpp.
 #include <gtest/gtest.h>
 
 #include "curves/modify.h"

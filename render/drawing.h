@@ -1,0 +1,37 @@
+// drawing.h -- what is drawn on a picture as vectors: lines, areas and texts, in the order in which they lie over each
+// other. Knows neither scenes nor how it is painted: paint.h puts it on pixels.
+//
+// Pixels of the picture: x to the right, y down, (0,0) the corner of the top left pixel. Colours are linear.
+#pragma once
+#include <variant>
+#include <vector>
+
+#include "math_text.h"
+#include "scalar/vec.h"
+
+namespace isoparm {
+
+struct Polyline {
+    std::vector<Vec2> points;
+    double width = 1;
+    std::vector<double> dash;  // lengths on, off, on, ...; empty: not dashed
+    bool round = true;         // ends; corners always are
+};
+struct Filled {
+    std::vector<Vec2> outline;  // closed
+};
+struct Text {
+    Vec2 at;          // where the base line begins
+    double size = 0;  // of the letters: one em
+    MathText text;
+    double halo = 0;  // width of the white rim about the letters
+};
+
+struct DrawingItem {
+    std::variant<Polyline, Filled, Text> shape;
+    Vec3<double> color;
+    double opacity = 1;
+};
+using Drawing = std::vector<DrawingItem>;
+
+}  // namespace isoparm

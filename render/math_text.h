@@ -1,0 +1,36 @@
+// math_text.h -- short texts as a paper prints them: "P_{00}", "c_0", "\alpha_i^2", "Triangle $T_1$".
+//
+// Between two $ is mathematics: letters slanted, digits and signs upright, _ and ^ with one character or {several},
+// names like \alpha. A text without $ is mathematics as a whole when it has _, ^ or \, or no word of two letters.
+#pragma once
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace isoparm {
+
+/// Letters of one kind in a row. Lengths are in ems of the whole text.
+struct TextRun {
+    std::string text;  // UTF-8
+    bool italic = false, bold = false;
+    double scale = 1;  // of the letters
+    double rise = 0;   // of their base line
+    /// Where it begins: behind everything before; or, for the first run of a superscript that stands over a subscript,
+    /// where that subscript began.
+    enum class Begins { behind, subscript, over_subscript } begins = Begins::behind;
+};
+using MathText = std::vector<TextRun>;
+
+struct MathTextError : std::runtime_error {
+    MathTextError(std::size_t at, const std::string& what) : std::runtime_error(what), offset(at) {}
+    std::size_t offset;  // byte
+};
+
+/// `prose`: text without $ is never mathematics. Throws MathTextError: "found ..., expected ...".
+MathText parse_math_text(const std::string& text, bool prose = false);
+
+/// A number as an axis shows it: at most `digits` behind the point, a true minus sign.
+MathText number_text(double x, int digits);
+
+}  // namespace isoparm

@@ -1,0 +1,236 @@
+#include "overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "axes.h"
+#include "drawn.h"
+#include "flat_lines.h"
+#include "labels.h"
+#include "palette.h"
+
+namespace isoparm {
+namespace {
+
+constexpr int kOnTheSpot = 8;
+constexpr double kLetters = 0.036;      // of the picture's height, or of three quarters of its width,
+constexpr double kMostLetters = 0.055;  // and of its panel's
+
+using Kind = SceneObject::Kind;
+
+class Overlay {
+public:
+    Overlay(const Scene& scene, const TracedScene& traced, const Camera& camera, double pixel, double letter)
+        : scene_(scene),
+          camera_(camera),
+          sight_(traced, camera),
+          pixel_(pixel),
+          size_(bounding_box(scene).diagonal()),
+          letter_(letter) {
+        if (!(size_ > 0)) size_ = 1;
+    }
+
+    Drawing run(const std::vector<SceneObject>& objects) {
+        middle_ = middle_of(objects);
+        for (const SceneObject& o : objects) add(o);
+        for (const SceneObject& o : objects) add_labels(o);
+        place_labels(requests_, obstacles_, camera_.width, camera_.height, drawing_);
+        return std::move(drawing_);
+    }
+
+private:
+    // ---- lines ----------------------------------------------------------------------------------------------------
+    void add(const SceneObject& o) {
+        const double radius = radius_of(o, size_);
+        switch (o.kind) {
+            case Kind::surface:
+                if (!o.boundary) return;
+                for (const DrawnCurve& edge : drawn_edges(surface_of(scene_, o).patches, size_))
+                    add(o, points_of(edge), curve_color(), 1, radius);
+                return;
+            case Kind::curve:
+                return add(o, points_of(drawn(curve_of(scene_, o))), o.color.value_or(curve_color()), o.opacity,
+                           radius);
+            case Kind::net:
+                for (const auto& [i, j] : o.net.rods)
+                    add(o, points_between(o.net.points[i], o.net.points[j]), o.color.value_or(net_color()), o.opacity,
+                        radius);
+                for (const Point& p : o.net.points) avoid({p}, kNetBall * radius);
+                return;
+            case Kind::point:
+                avoid({o.point}, radius_of_point(o));
+                if (o.line.width > 0) add_dot(o);
+                return;
+            case Kind::axes:
+                add_axes(o, o.color.value_or(ink_color()), sight_, pixel_,
+                         o.label.size ? *o.label.size * pixel_ : letter_, obstacles_, drawing_);
+        }
+    }
+    /// A flat line, or what a tube of that radius covers already.
+    void add(const SceneObject& o, const std::vector<Point>& points, const Color& color, double opacity,
+             double radius) {
+        avoid(points, o.line.width > 0 ? 0 : radius);
+        add_line(points, {color, opacity, o.line.width * pixel_, scaled(o.line.dash), o.line.hidden}, sight_, 0,
+                 drawing_);
+    }
+    double radius_of_point(const SceneObject& o) const {
+        if (o.line.width > 0) return 0.5 * o.line.width * pixel_ * camera_.pixel_size(camera_.depth(o.point));
+        return radius_of(o, size_);
+    }
+    void add_dot(const SceneObject& o) {
+        constexpr int kCorners = 48;
+        if (!(camera_.depth(o.point) > 0)) return;
+        const Vec2 at = camera_.project(o.point);
+        const double radius = 0.5 * o.line.width * pixel_;
+        Filled disc;
+        for (int i = 0; i < kCorners; ++i) {
+            const double turn = 2 * std::numbers::pi * i / kCorners;
+            disc.outline.push_back({at.x + radius * std::cos(turn), at.y + radius * std::sin(turn)});
+        }
+        const double opacity = o.opacity * opacity_of(o.line.hidden, sight_.of(o.point));
+        if (opacity > 0.02) drawing_.push_back({std::move(disc), o.color.value_or(point_color()), opacity});
+    }
+    std::vector<double> scaled(std::vector<double> dash) const {
+        for (double& d : dash) d *= pixel_;
+        return dash;
+    }
+    std::vector<Point> points_of(const DrawnCurve& curve) const {
+        return fine_points(cubic_pieces(curve, 1e-5 * size_), camera_);
+    }
+    std::vector<Point> points_between(const Point& a, const Point& d) const {
+        return fine_points({{a, a + (1.0 / 3) * (d - a), a + (2.0 / 3) * (d - a), d}}, camera_);
+    }
+    double in_pixels(double length, const Point& p) const { return length / camera_.pixel_size(camera_.depth(p)); }
+    void avoid(const std::vector<Point>& points, double radius) {
+        const Obstacle* last = nullptr;
+        for (const Point& p : points) {
+            if (!(camera_.depth(p) > 0)) continue;
+            const Vec2 at = camera_.project(p);
+            if (last && points.size() > 1 && std::hypot(at.x - last->at.x, at.y - last->at.y) < 0.2 * letter_) continue;
+            obstacles_.push_back({at, in_pixels(radius, p)});
+            last = &obstacles_.back();
+        }
+    }
+
+    // ---- labels ---------------------------------------------------------------------------------------------------
+    void add_labels(const SceneObject& o) {
+        for (std::size_t i = 0; i < o.net_labels.size(); ++i)
+            request(o.net_labels[i], {anchor(o.net.points[i], kNetBall * radius_of(o, size_))});
+        if (!o.label.text.empty()) request(o.label, anchors_of(o), o.kind == Kind::surface ? kOnTheSpot : -1);
+    }
+    void request(const Label& label, const std::vector<Anchor>& anchors, int otherwise = -1) {
+        LabelRequest r{&label,
+                       label.side.value_or(otherwise),
+                       {},
+                       label.size ? *label.size * pixel_ : letter_,
+                       label.color.value_or(ink_color())};
+        for (const Anchor& a : anchors)
+            if (std::isfinite(a.at.x + a.at.y) && !(a.seen == 0 && label.hidden == Hidden::hide))
+                r.anchors.push_back(a);
+        requests_.push_back(std::move(r));
+    }
+    std::vector<Anchor> anchors_of(const SceneObject& o) const {
+        switch (o.kind) {
+            case Kind::surface:
+                return surface_anchors(o);
+            case Kind::curve:
+                return curve_anchors(o);
+            case Kind::net:
+                return {anchor(o.net.points[o.net.points.size() / 2], kNetBall * radius_of(o, size_))};
+            case Kind::point:
+                return {anchor(o.point, radius_of_point(o))};
+            case Kind::axes:
+                break;
+        }
+        return {};
+    }
+    std::vector<Anchor> surface_anchors(const SceneObject& o) const {
+        const Surface& s = surface_of(scene_, o);
+        const Patch& patch = s.patches[s.patches.size() / 2].patch;
+        const Rect r = patch.rect();
+        std::vector<Vec2> at;
+        if (o.label.at_uv)
+            at = {*o.label.at_uv};
+        else if (patch.domain() == Domain::triangle)
+            at = {{1.0 / 3, 1.0 / 3}, {0.5, 0.25}, {0.25, 0.5}, {0.25, 0.25}};
+        else
+            for (const auto& [x, y] : {std::array{0.5, 0.5}, {0.3, 0.5}, {0.7, 0.5}, {0.5, 0.3}, {0.5, 0.7}})
+                at.push_back({r.u0 + x * (r.u1 - r.u0), r.v0 + y * (r.v1 - r.v0)});
+        std::vector<Anchor> anchors;
+        for (const Vec2& uv : at) anchors.push_back(anchor(patch.point(uv.x, uv.y), 0));
+        return anchors;
+    }
+    std::vector<Anchor> curve_anchors(const SceneObject& o) const {
+        const Curve& c = curve_of(scene_, o);
+        const double radius = o.line.width > 0 ? 0 : radius_of(o, size_);
+        std::vector<double> at;
+        if (o.label.at)
+            at = {*o.label.at};
+        else
+            for (const double t : {0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9})
+                at.push_back(c.begin() + t * (c.end() - c.begin()));
+        std::vector<Anchor> anchors;
+        for (const double t : at) {
+            Anchor a = anchor(c(t), radius);
+            if (o.line.width > 0) a.gap += 0.5 * o.line.width * pixel_;
+            anchors.push_back(a);
+        }
+        return anchors;
+    }
+    Anchor anchor(const Point& p, double radius) const {
+        if (!(camera_.depth(p) > 0)) return {{NAN, NAN}, 0, {}, 0};
+        const Vec2 at = camera_.project(p);
+        return {at, sight_.of(p, 1.5 * radius), {at.x - middle_.x, at.y - middle_.y}, in_pixels(radius, p)};
+    }
+    /// The middle of what is drawn: labels stand rather on the outside.
+    Vec2 middle_of(const std::vector<SceneObject>& objects) const {
+        double left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
+        for (const Point& p : drawn_points(scene_, objects)) {
+            if (!(camera_.depth(p) > 0)) continue;
+            const Vec2 at = camera_.project(p);
+            left = std::min(left, at.x), right = std::max(right, at.x);
+            top = std::min(top, at.y), bottom = std::max(bottom, at.y);
+        }
+        return left <= right ? Vec2{0.5 * (left + right), 0.5 * (top + bottom)}
+                             : Vec2{0.5 * camera_.width, 0.5 * camera_.height};
+    }
+
+    const Scene& scene_;
+    const Camera& camera_;
+    Sight sight_;
+    double pixel_, size_, letter_;
+    Vec2 middle_;
+    std::vector<Obstacle> obstacles_;
+    std::vector<LabelRequest> requests_;
+    Drawing drawing_;
+};
+
+}  // namespace
+
+Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced,
+                const Camera& camera, double pixel, double letter) {
+    const auto vectors = [](const SceneObject& o) {
+        return o.line.width > 0 || !o.label.text.empty() || !o.net_labels.empty() || o.kind == Kind::axes;
+    };
+    if (std::none_of(objects.begin(), objects.end(), vectors)) return {};
+    return Overlay(scene, traced, camera, pixel, letter).run(objects);
+}
+
+double letter_size(int picture_width, int picture_height, int width, int height) {
+    const auto size = [](int w, int h) { return std::min(double(h), 0.75 * w); };
+    return std::min(kLetters * size(picture_width, picture_height), kMostLetters * size(width, height));
+}
+
+Vec2 room_for_text(const std::vector<SceneObject>& objects, double letter) {
+    Vec2 room;
+    for (const SceneObject& o : objects) {
+        if (o.kind == Kind::axes)
+            room = {std::max(room.x, 2.4 * letter), std::max(room.y, 1.6 * letter)};
+        else if (!o.label.text.empty() || !o.net_labels.empty())
+            room = {std::max(room.x, 0.8 * letter), std::max(room.y, 0.5 * letter)};
+    }
+    return room;
+}
+
+}  // namespace isoparm

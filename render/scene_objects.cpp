@@ -1,0 +1,227 @@
+#include "scene_objects.h"
+
+#include <algorithm>
+
+#include "suggest.h"
+
+namespace isoparm {
+
+namespace {
+
+using Kind = Json::Kind;
+
+Isolines read_isolines(const Json& j, const SceneValues& values) {
+    must_be_object(j, "isolines {\"u\": count, \"v\": count}");
+    j.allow_keys({"u", "v", "width", "color", "opacity"});
+    Isolines lines;
+    if (const auto u = j.find("u")) lines.u = values.integer(*u, 0, 1000, "a number of lines");
+    if (const auto v = j.find("v")) lines.v = values.integer(*v, 0, 1000, "a number of lines");
+    if (const auto width = j.find("width")) lines.width = values.positive(*width, "a positive width in pixels");
+    if (const auto color = j.find("color")) lines.color = values.color(*color);
+    if (const auto opacity = j.find("opacity")) lines.opacity = values.in_range(*opacity, 0, 1, "an opacity from 0 to 1");
+    return lines;
+}
+
+ControlNet net_named(const Json& name, SceneBuilder& builder) {
+    const std::string& wanted = builder.values().text(name, "the name of a surface or curve with control points");
+    std::vector<std::string> names = builder.surface_names();
+    const bool surface = std::find(names.begin(), names.end(), wanted) != names.end();
+    const auto curves = builder.curve_names();
+    names.insert(names.end(), curves.begin(), curves.end());
+    if (std::find(names.begin(), names.end(), wanted) == names.end()) {
+        name.expected("the name of a surface or curve (have: " + listed(names) + ")" + did_you_mean(wanted, names));
+    }
+    ControlNet net = surface ? builder.surface(name).net : builder.curve(name).net;
+    if (net.points.empty()) name.expected("a surface or curve with control points (bezier, bspline, bezier_triangle, line ...)");
+    return net;
+}
+
+// ---- labels and lines -----------------------------------------------------------------------------------------------
+
+Hidden read_hidden(const Json& j, const SceneValues& values) { return static_cast<Hidden>(values.word(j, {"ghost", "hide", "show", "dash"})); }
+
+double read_pixels(const Json& j, const SceneValues& values, double most, const std::string& what) {
+    const std::string expected = what + " in pixels, from 0.01 to " + to_text(most);
+    return values.in_range(j, 0.01, most, expected);
+}
+
+LineStyle read_line(const Json& j, const SceneValues& values, LineStyle line) {
+    const auto width = j.find("line"), dash = j.find("dash"), hidden = j.find("hidden");
+    if (width) line.width = read_pixels(*width, values, 1000, "a width");
+    if (dash) {
+        if (!(line.width > 0)) dash->fail_at_key("found \"dash\" without \"line\", expected the width of a flat line too, such as \"line\": 2");
+        for (const Json& d : values.list(*dash, 1, 16, "lengths in pixels: on, off, ...")) line.dash.push_back(read_pixels(d, values, 10000, "a length"));
+    }
+    if (hidden) line.hidden = read_hidden(*hidden, values);
+    return line;
+}
+
+void read_place(const Json& at, const SceneValues& values, SceneBuilder& builder, const Json& name, SceneObject& o) {
+    if (o.kind == SceneObject::Kind::curve) {
+        const Curve curve = builder.curve(name).curve;
+        o.label.at = values.in_range(at, curve.begin(), curve.end(), "a parameter of the curve, from " + to_text(curve.begin()) + " to " + to_text(curve.end()));
+        return;
+    }
+    const auto uv = values.numbers(at, 2, 2, "numbers [u, v]");
+    const BuiltSurface s = builder.surface(name);
+    if (s.patches.size() != 1) at.fail("found a place on a surface of " + std::to_string(s.patches.size()) + " patches, expected one of a single patch");
+    const Patch& patch = s.patches[0].patch;
+    const Rect r = patch.rect();
+    const bool inside = uv[0] >= r.u0 && uv[0] <= r.u1 && uv[1] >= r.v0 && uv[1] <= r.v1 && (patch.domain() == Domain::quad || uv[0] + uv[1] <= 1);
+    if (!inside) at.fail("found [" + to_text(uv[0]) + ", " + to_text(uv[1]) + "], expected a point of the domain of the surface");
+    o.label.at_uv = {uv[0], uv[1]};
+}
+
+/// "text", or {"text": ..., and how it looks}. `name`: the curve or surface.
+void read_label(const Json& j, SceneBuilder& builder, const Json& name, SceneObject& o) {
+    const SceneValues& values = builder.values();
+    if (j.is(Kind::string)) {
+        o.label.text = read_math_text(j, values, false);
+        return;
+    }
+    if (!j.is(Kind::object)) j.expected("a text, or {\"text\": ..., \"at\": ..., \"side\": ...}");
+    const bool placed = o.kind == SceneObject::Kind::curve || o.kind == SceneObject::Kind::surface;
+    if (placed) j.allow_keys({"text", "at", "side", "size", "color", "hidden"});
+    else j.allow_keys({"text", "side", "size", "color", "hidden"});
+    o.label.text = read_math_text(j.at("text", "the text of the label"), values, false);
+    if (const auto at = j.find("at")) read_place(*at, values, builder, name, o);
+    if (const auto side = j.find("side")) {
+        o.label.side = static_cast<int>(values.word(*side, {"right", "above right", "above", "above left", "left", "below left", "below", "below right", "center"}));
+    }
+    if (const auto size = j.find("size")) o.label.size = read_pixels(*size, values, 1000, "a size of letters");
+    if (const auto color = j.find("color")) o.label.color = values.color(*color);
+    if (const auto hidden = j.find("hidden")) o.label.hidden = read_hidden(*hidden, values);
+}
+
+/// "P": P_{00}, P_{01}, ...; or {"text": "P", and how they look}.
+std::vector<Label> read_net_labels(const Json& j, const SceneValues& values, const ControlNet& net) {
+    Label look;
+    if (j.is(Kind::object)) {
+        j.allow_keys({"text", "size", "color", "hidden"});
+        if (const auto size = j.find("size")) look.size = read_pixels(*size, values, 1000, "a size of letters");
+        if (const auto color = j.find("color")) look.color = values.color(*color);
+        if (const auto hidden = j.find("hidden")) look.hidden = read_hidden(*hidden, values);
+    } else if (!j.is(Kind::string)) {
+        j.expected("the letter of the points, such as \"P\", or {\"text\": \"P\", ...}");
+    }
+    const Json letter = j.is(Kind::object) ? j.at("text", "the letter of the points, such as \"P\"") : j;
+    read_math_text(letter, values, false);
+    if (letter.string().find_first_of("_$") != std::string::npos) letter.expected("a letter without _ and $, to which the indices are added");
+    if (net.indices.size() != net.points.size()) j.expected("no labels: the points of this net have no indices");
+    std::vector<Label> labels(net.points.size(), look);
+    for (std::size_t i = 0; i < labels.size(); ++i) labels[i].text = parse_math_text(letter.string() + "_{" + net.indices[i] + "}");
+    return labels;
+}
+
+// ---- axes -----------------------------------------------------------------------------------------------------------
+
+constexpr const char* kAxisNames[3] = {"x", "y", "z"};
+
+/// false: none; true: round numbers; [0, 0.5, 1]: these.
+std::optional<std::vector<double>> read_ticks(const Json& j, const SceneValues& values) {
+    if (j.is(Kind::boolean)) {
+        if (j.boolean()) return {};
+        return std::vector<double>{};
+    }
+    if (!j.is(Kind::array)) j.expected("true, false, or an array of numbers");
+    auto ticks = values.numbers(j, 0, 1000, "numbers");
+    std::sort(ticks.begin(), ticks.end());
+    return ticks;
+}
+
+Axes read_axes(const Json& j, const SceneValues& values) {
+    must_be_object(j, "axes {\"x\": [from, to], \"y\": [from, to]}");
+    j.allow_keys({"x", "y", "z", "ticks", "names", "origin"});
+    Axes axes;
+    if (const auto origin = j.find("origin")) axes.origin = values.point(*origin);
+    const auto ticks = j.find("ticks"), names = j.find("names");
+    if (ticks && ticks->is(Kind::object)) ticks->allow_keys({"x", "y", "z"});
+    const auto names_of = names ? values.list(*names, 1, 3, "names, one an axis") : std::vector<Json>{};
+    std::size_t count = 0;
+    for (int k = 0; k < 3; ++k) {
+        const auto range = j.find(kAxisNames[k]);
+        if (!range) continue;
+        const auto [low, high] = values.interval(*range);
+        Axes::Axis& axis = axes.axis[k].emplace();
+        axis.low = low;
+        axis.high = high;
+        if (ticks) {
+            const auto own = ticks->is(Kind::object) ? ticks->find(kAxisNames[k]) : nullptr;
+            if (own) axis.ticks = read_ticks(*own, values);
+            else if (!ticks->is(Kind::object)) axis.ticks = read_ticks(*ticks, values);
+        }
+        if (count < names_of.size()) axis.name = read_math_text(names_of[count], values, false);
+        ++count;
+    }
+    if (count == 0) j.fail("found axes without a range, expected at least one of \"x\", \"y\" and \"z\": [from, to]");
+    if (names && names_of.size() != count) names->fail("found " + std::to_string(names_of.size()) + " names for " + std::to_string(count) + " axes, expected one each");
+    return axes;
+}
+
+}  // namespace
+
+void must_be_object(const Json& j, const std::string& what) {
+    if (!j.is(Kind::object)) j.expected(what);
+}
+
+MathText read_math_text(const Json& j, const SceneValues& values, bool prose) {
+    try {
+        return parse_math_text(values.text(j, "a text"), prose);
+    } catch (const MathTextError& e) {
+        j.fail_inside(e.offset, std::string(e.what()) + ", in the text " + quoted(j.string()));
+    }
+}
+
+SceneObject read_object(const Json& j, SceneBuilder& builder) {
+    const SceneValues& values = builder.values();
+    must_be_object(j, "an object with one of the keys surface, curve, net, point or axes");
+    const auto surface = j.find("surface"), curve = j.find("curve"), net = j.find("net"), point = j.find("point"), axes = j.find("axes");
+    const int kinds = !!surface + !!curve + !!net + !!point + !!axes;
+    if (kinds != 1) j.fail("found " + std::to_string(kinds) + " of the keys surface, curve, net, point and axes, expected one of them");
+
+    SceneObject o;
+    if (surface) {
+        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "radius", "label", "line", "dash", "hidden"});
+        o.kind = SceneObject::Kind::surface;
+        o.name = values.text(*surface, "the name of a surface");
+        builder.surface(*surface);
+        if (const auto back = j.find("back")) o.back = values.color(*back);
+        if (const auto lines = j.find("isolines")) o.isolines = read_isolines(*lines, values);
+        if (const auto boundary = j.find("boundary")) o.boundary = values.boolean(*boundary);
+    } else if (curve) {
+        j.allow_keys({"curve", "color", "opacity", "radius", "label", "line", "dash", "hidden"});
+        o.kind = SceneObject::Kind::curve;
+        o.name = values.text(*curve, "the name of a curve");
+        builder.curve(*curve);
+    } else if (net) {
+        j.allow_keys({"net", "color", "opacity", "radius", "label", "labels", "line", "dash", "hidden"});
+        o.kind = SceneObject::Kind::net;
+        o.net = net_named(*net, builder);
+        o.name = net->string();
+        if (const auto labels = j.find("labels")) o.net_labels = read_net_labels(*labels, values, o.net);
+    } else if (point) {
+        j.allow_keys({"point", "color", "opacity", "radius", "label", "dot", "hidden"});
+        o.kind = SceneObject::Kind::point;
+        o.point = values.point(*point);
+    } else {
+        j.allow_keys({"axes", "color", "opacity", "line", "hidden", "size"});
+        o.kind = SceneObject::Kind::axes;
+        o.axes = read_axes(*axes, values);
+        o.line.width = 1.5;
+        if (const auto size = j.find("size")) o.label.size = read_pixels(*size, values, 1000, "a size of letters");
+    }
+    if (const auto dot = j.find("dot")) o.line.width = read_pixels(*dot, values, 1000, "a diameter");
+    o.line = read_line(j, values, o.line);
+    if (surface && o.line.width > 0 && !o.boundary) j.find("line")->fail_at_key("found \"line\" without \"boundary\", expected \"boundary\": true, which it draws");
+    if (const auto radius = j.find("radius")) {
+        if (o.line.width > 0 && !net)
+            radius->fail_at_key(std::string("found both \"radius\" and \"") + (point ? "dot\", expected a ball or a flat dot" : "line\", expected a tube or a flat line"));
+        o.radius = values.positive(*radius, "a positive radius in scene units");
+    }
+    if (const auto label = j.find("label")) read_label(*label, builder, surface ? *surface : curve ? *curve : *label, o);
+    if (const auto color = j.find("color")) o.color = values.color(*color);
+    if (const auto opacity = j.find("opacity")) o.opacity = values.in_range(*opacity, 0, 1, "an opacity from 0 to 1");
+    return o;
+}
+
+}  // namespace isoparm

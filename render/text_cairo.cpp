@@ -1,0 +1,183 @@
+#include "text_cairo.h"
+
+#include <pango/pangocairo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "error.h"
+#include "suggest.h"
+
+namespace isoparm {
+namespace {
+
+// Times as papers print it, with Greek; what comes later is for machines without.
+constexpr const char* kFamilies =
+    "STIXGeneral, STIX, STIX Two Text, FreeSerif, TeX Gyre Termes, Times New Roman, Liberation Serif, DejaVu Serif, "
+    "serif";
+
+template <auto release> struct Release {
+    template <class T> void operator()(T* p) const { release(p); }
+};
+using Surface = std::unique_ptr<cairo_surface_t, Release<cairo_surface_destroy>>;
+using Context = std::unique_ptr<cairo_t, Release<cairo_destroy>>;
+using Layout = std::unique_ptr<PangoLayout, Release<g_object_unref>>;
+using Font = std::unique_ptr<PangoFontDescription, Release<pango_font_description_free>>;
+using FontOptions = std::unique_ptr<cairo_font_options_t, Release<cairo_font_options_destroy>>;
+
+void check(cairo_t* c) {
+    if (const auto status = cairo_status(c); status != CAIRO_STATUS_SUCCESS)
+        throw std::runtime_error(std::string("Cairo failed: ") + cairo_status_to_string(status));
+}
+
+/// Outlines of the letters, not fitted to the pixels: a text looks alike at every size and place.
+Layout layout_of(cairo_t* c, const TextRun& run, double size) {
+    Layout layout(pango_cairo_create_layout(c));
+    const FontOptions options(cairo_font_options_create());
+    cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
+    cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+    pango_cairo_context_set_font_options(pango_layout_get_context(layout.get()), options.get());
+    pango_context_set_round_glyph_positions(pango_layout_get_context(layout.get()), FALSE);
+    pango_layout_context_changed(layout.get());
+    const Font font(pango_font_description_new());
+    pango_font_description_set_family_static(font.get(), kFamilies);
+    pango_font_description_set_style(font.get(), run.italic ? PANGO_STYLE_ITALIC : PANGO_STYLE_NORMAL);
+    pango_font_description_set_weight(font.get(), run.bold ? PANGO_WEIGHT_BOLD : PANGO_WEIGHT_NORMAL);
+    pango_font_description_set_absolute_size(font.get(), size * run.scale * PANGO_SCALE);
+    pango_layout_set_font_description(layout.get(), font.get());
+    pango_layout_set_single_paragraph_mode(layout.get(), TRUE);
+    pango_layout_set_text(layout.get(), run.text.c_str(), static_cast<int>(run.text.size()));
+    return layout;
+}
+
+/// Puts the outlines on the context's path, from (x,y) on.
+TextBox set(cairo_t* c, const MathText& text, double size, double x, double y) {
+    TextBox box{INFINITY, INFINITY, -INFINITY, -INFINITY, 0};
+    double pen = x, subscript = x, furthest = x;
+    bool slanted = false;
+    for (const TextRun& run : text) {
+        if (run.begins == TextRun::Begins::over_subscript)
+            pen = subscript + 0.06 * size;
+        else
+            pen = std::max(pen, furthest);
+        if (run.begins == TextRun::Begins::subscript)
+            subscript = pen;
+        else if (slanted && !run.italic)
+            pen += 0.04 * size * run.scale;  // a slanted letter leans over what follows
+        slanted = run.italic;
+        const Layout layout = layout_of(c, run, size);
+        if (pango_layout_get_unknown_glyphs_count(layout.get()) > 0)
+            throw Error(ErrorKind::io,
+                        "no font was found that has all letters of " + quoted(run.text) +
+                            " in a label, expected one; install one (Debian, Ubuntu: apt-get install fonts-stix)");
+        PangoLayoutLine* line = pango_layout_get_line_readonly(layout.get(), 0);
+        PangoRectangle ink, logical;
+        pango_layout_line_get_extents(line, &ink, &logical);
+        const double base = y - run.rise * size, unit = 1.0 / PANGO_SCALE;
+        if (ink.width > 0 && ink.height > 0) {
+            box.left = std::min(box.left, pen + unit * ink.x);
+            box.right = std::max(box.right, pen + unit * (ink.x + ink.width));
+            box.top = std::min(box.top, base + unit * ink.y);
+            box.bottom = std::max(box.bottom, base + unit * (ink.y + ink.height));
+        }
+        cairo_move_to(c, pen, base);
+        pango_cairo_layout_line_path(c, line);
+        pen += unit * logical.width;
+        furthest = std::max(furthest, pen);
+    }
+    box.advance = furthest - x;
+    if (!(box.left <= box.right)) box.left = box.right = x, box.top = box.bottom = y;
+    check(c);
+    return box;
+}
+
+struct Canvas {
+    Surface surface;
+    Context context;
+    explicit Canvas(int width = 1, int height = 1)
+        : surface(cairo_image_surface_create(CAIRO_FORMAT_A8, width, height)), context(cairo_create(surface.get())) {
+        check(context.get());
+        cairo_set_antialias(context.get(), CAIRO_ANTIALIAS_BEST);
+        cairo_set_tolerance(context.get(), 0.02);
+    }
+};
+
+/// What `draw` paints on a canvas that shows the pixels of a box, as far as it is in the picture.
+template <class Draw>
+Coverage painted(double left, double top, double right, double bottom, int width, int height, Draw draw) {
+    Coverage all;
+    all.x0 = static_cast<int>(std::floor(std::clamp(left, 0.0, double(width))));
+    all.y0 = static_cast<int>(std::floor(std::clamp(top, 0.0, double(height))));
+    all.width = static_cast<int>(std::ceil(std::clamp(right, 0.0, double(width)))) - all.x0;
+    all.height = static_cast<int>(std::ceil(std::clamp(bottom, 0.0, double(height)))) - all.y0;
+    if (!(all.width > 0 && all.height > 0)) return {};
+    const Canvas canvas(all.width, all.height);
+    cairo_t* c = canvas.context.get();
+    cairo_translate(c, -all.x0, -all.y0);
+    draw(c);
+    check(c);
+    cairo_surface_flush(canvas.surface.get());
+    const unsigned char* data = cairo_image_surface_get_data(canvas.surface.get());
+    const int stride = cairo_image_surface_get_stride(canvas.surface.get());
+    all.part.resize(static_cast<std::size_t>(all.width) * all.height);
+    for (int y = 0; y < all.height; ++y)
+        std::copy_n(data + static_cast<std::ptrdiff_t>(y) * stride, all.width,
+                    &all.part[static_cast<std::size_t>(y) * all.width]);
+    return all;
+}
+
+template <class Draw>
+Coverage painted_about(const std::vector<Vec2>& points, double rim, int width, int height, Draw draw) {
+    double left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
+    for (const Vec2& p : points) {
+        left = std::min(left, p.x), right = std::max(right, p.x);
+        top = std::min(top, p.y), bottom = std::max(bottom, p.y);
+    }
+    if (points.empty() || !std::isfinite(left + top + right + bottom)) return {};
+    return painted(left - rim, top - rim, right + rim, bottom + rim, width, height, [&](cairo_t* c) {
+        for (const Vec2& p : points) cairo_line_to(c, p.x, p.y);
+        draw(c);
+    });
+}
+
+}  // namespace
+
+Coverage coverage(const Polyline& line, int width, int height) {
+    return painted_about(line.points, line.width + 1, width, height, [&](cairo_t* c) {
+        cairo_set_line_width(c, line.width);
+        cairo_set_line_cap(c, line.round ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+        cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
+        if (!line.dash.empty()) cairo_set_dash(c, line.dash.data(), static_cast<int>(line.dash.size()), 0);
+        cairo_stroke(c);
+    });
+}
+
+Coverage coverage(const Filled& area, int width, int height) {
+    return painted_about(area.outline, 1, width, height, [](cairo_t* c) {
+        cairo_close_path(c);
+        cairo_fill(c);
+    });
+}
+
+Coverage coverage(const Text& text, double rim, int width, int height) {
+    const TextBox box = text_box(text.text, text.size);
+    const double around = rim + 2;
+    return painted(text.at.x + box.left - around, text.at.y + box.top - around, text.at.x + box.right + around,
+                   text.at.y + box.bottom + around, width, height, [&](cairo_t* c) {
+                       set(c, text.text, text.size, text.at.x, text.at.y);
+                       if (rim > 0) {
+                           cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
+                           cairo_set_line_width(c, 2 * rim);
+                           cairo_stroke_preserve(c);
+                       }
+                       cairo_fill(c);
+                   });
+}
+
+TextBox text_box(const MathText& text, double size) {
+    const Canvas canvas;
+    return set(canvas.context.get(), text, size, 0, 0);
+}
+
+}  // namespace isoparm

@@ -1,0 +1,29 @@
+// text_cairo.h -- how much of each pixel a line, an area or a text covers. text_cairo.cpp is the only file that
+// includes Cairo and Pango; linking them costs 8 ms at the start of the program, loading them when needed would save
+// less than it complicates.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "drawing.h"
+
+namespace isoparm {
+
+/// A box of pixels and the part of each that is covered, in 255ths.
+struct Coverage {
+    int x0 = 0, y0 = 0, width = 0, height = 0;
+    std::vector<std::uint8_t> part;  // width * height, rows from the top
+};
+/// Within a picture of width x height pixels. Throws Error(io) when no font has the letters.
+Coverage coverage(const Polyline& line, int width, int height);
+Coverage coverage(const Filled& area, int width, int height);
+/// Of the letters, made fatter by `rim` pixels on every side.
+Coverage coverage(const Text& text, double rim, int width, int height);
+
+/// About a text whose base line begins at (0,0): what it covers (y down), and where the next letter would stand.
+struct TextBox {
+    double left = 0, top = 0, right = 0, bottom = 0, advance = 0;
+};
+TextBox text_box(const MathText& text, double size);
+
+}  // namespace isoparm

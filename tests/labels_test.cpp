@@ -1,0 +1,226 @@
+// labels_test.cpp -- texts, where labels stand, and how they are painted.
+#include "labels.h"
+
+#include <numbers>
+
+#include "camera.h"
+#include "drawing_tests.h"
+#include "drawn.h"
+#include "error.h"
+#include "flat_lines.h"
+#include "overlay.h"
+#include "paint.h"
+#include "text_cairo.h"
+
+namespace isoparm {
+namespace {
+
+using namespace test;
+
+// ---- texts ----------------------------------------------------------------------------------------------------------
+
+TEST(MathText, SubscriptsAreSmallUprightDigitsBelow) {
+    const MathText t = parse_math_text("P_{01}");
+    ASSERT_EQ(t.size(), 2u);
+    EXPECT_EQ(t[0].text, "P");
+    EXPECT_TRUE(t[0].italic);
+    EXPECT_EQ(t[1].text, "01");
+    EXPECT_FALSE(t[1].italic);
+    EXPECT_LT(t[1].rise, 0);
+    EXPECT_LT(t[1].scale, 0.8);
+}
+TEST(MathText, SuperscriptsStandOverSubscripts) {
+    const MathText t = parse_math_text("H_i^{(3)}(t)");
+    ASSERT_GE(t.size(), 5u);
+    EXPECT_EQ(t[1].begins, TextRun::Begins::subscript);
+    EXPECT_EQ(t[2].begins, TextRun::Begins::over_subscript);
+    EXPECT_GT(t[2].rise, 0);
+    EXPECT_EQ(plain(t), "Hi(3)(t)");
+    EXPECT_EQ(t.back().scale, 1);
+    // Side by side they would be wider.
+    EXPECT_LT(text_box(t, 100).advance, text_box(parse_math_text("H_{i(3)}(t)"), 100).advance);
+}
+TEST(MathText, GreekProseAndMinus) {
+    EXPECT_EQ(plain(parse_math_text("\\alpha-\\Delta")), "α−Δ");
+    EXPECT_FALSE(parse_math_text("yellow triangle").at(0).italic);
+    EXPECT_FALSE(parse_math_text("(a)", true).at(0).italic);
+    const MathText mixed = parse_math_text("(a) sides $E_1$");
+    EXPECT_FALSE(mixed.at(0).italic);
+    EXPECT_EQ(mixed.at(1).text, "E");
+    EXPECT_TRUE(mixed.at(1).italic);
+    EXPECT_TRUE(parse_math_text("\\mathbf{S}").at(0).bold);
+    EXPECT_EQ(plain(number_text(-0.25, 2)), "−0.25");
+    EXPECT_EQ(plain(number_text(2.5, 2)), "2.5");
+    EXPECT_EQ(plain(number_text(-1e-12, 1)), "0");
+}
+TEST(MathText, FaultsSayWhere) {
+    for (const auto& [text, offset] : {std::pair<std::string, std::size_t>{"P_{0", 2}, {"P_", 1}, {"a}", 1}, {"x \\alhpa", 2}, {"a $b", 2}}) {
+        try {
+            parse_math_text(text);
+            ADD_FAILURE() << text;
+        } catch (const MathTextError& e) {
+            EXPECT_EQ(e.offset, offset) << text;
+        }
+    }
+}
+TEST(MathText, LettersGrowInProportionToTheirSize) {
+    const MathText t = parse_math_text("P_{00}");
+    const TextBox small = text_box(t, 10), large = text_box(t, 100);
+    EXPECT_NEAR(large.advance, 10 * small.advance, 0.02 * large.advance);
+    EXPECT_NEAR(large.top, 10 * small.top, 0.02 * -large.top);
+    EXPECT_GT(small.advance, 5);
+    EXPECT_LT(small.top, -4);
+}
+
+// ---- where labels are -----------------------------------------------------------------------------------------------
+
+TEST(Labels, TheAnchorIsWhereTheRasterHasThePoint) {
+    // The centroid of a small ball in the raster against the projection that anchors its label.
+    for (const bool orthographic : {true, false})
+        for (const Point& p : {Point{0.3, -0.2, 0.4}, {-0.8, 0.5, -0.3}, {0.9, 0.9, 0.9}, {0, 0, 0}}) {
+            Scene scene;
+            scene.camera.eye = Point{3, -4, 2.5};
+            scene.camera.target = Point{0, 0, 0};
+            if (orthographic) scene.camera.orthographic = 4;
+            scene.image.width = 160;
+            scene.image.height = 120;
+            scene.image.samples = 64;
+            SceneObject& o = add(scene, Kind::point);
+            o.point = p;
+            o.radius = 0.06;
+            const Camera camera = make_camera(scene.camera, drawn_points(scene), 160, 120);
+            const Image image = render(scene, {}).image;
+            double x = 0, y = 0, all = 0;
+            for (int j = 0; j < 120; ++j)
+                for (int i = 0; i < 160; ++i) {
+                    const double a = image.at(i, j)[3];
+                    x += a * (i + 0.5), y += a * (j + 0.5), all += a;
+                }
+            ASSERT_GT(all, 1);
+            const Vec2 anchor = camera.project(p);
+            EXPECT_NEAR(x / all, anchor.x, 0.5);
+            EXPECT_NEAR(y / all, anchor.y, 0.5);
+        }
+}
+
+TEST(Labels, StandApartAndInsideThePicture) {
+    const MathText text = parse_math_text("P_{00}");
+    Label label;
+    label.text = text;
+    std::vector<LabelRequest> requests;
+    for (const double x : {2.0, 30.0, 60.0, 100.0, 104.0, 140.0, 199.0})
+        for (const double y : {2.0, 60.0, 119.0}) requests.push_back({&label, -1, {{{x, y}, 1, {}, 2}}, 9, {}});
+    Drawing drawing;
+    place_labels(requests, {}, 200, 120, drawing);
+    ASSERT_EQ(drawing.size(), requests.size());
+    const TextBox box = text_box(text, 9);
+    for (std::size_t i = 0; i < drawing.size(); ++i) {
+        const Vec2 a = std::get<Text>(drawing[i].shape).at;
+        EXPECT_GE(a.x + box.left, 0);
+        EXPECT_LE(a.x + box.right, 200);
+        EXPECT_GE(a.y + box.top, 0);
+        EXPECT_LE(a.y + box.bottom, 120);
+        for (std::size_t j = 0; j < i; ++j) {
+            const Vec2 b = std::get<Text>(drawing[j].shape).at;
+            EXPECT_FALSE(std::fabs(a.x - b.x) < box.right - box.left && std::fabs(a.y - b.y) < box.bottom - box.top) << i << ' ' << j;
+        }
+    }
+}
+
+TEST(Labels, KeepOffLinesAndTurnAwayFromTheMiddle) {
+    Label label;
+    label.text = parse_math_text("A");
+    Drawing drawing;
+    std::vector<Obstacle> line;  // to the right of the point
+    for (int x = 50; x < 100; x += 2) line.push_back({{double(x), 50}, 1});
+    place_labels({{&label, -1, {{{50, 50}, 1, {1, 0.2}, 2}}, 12, {}}}, line, 100, 100, drawing);
+    const Vec2 at = std::get<Text>(drawing.at(0).shape).at;
+    const TextBox box = text_box(label.text, 12);
+    EXPECT_TRUE(at.y + box.top > 51 || at.y + box.bottom < 49 || at.x + box.right < 50);
+    drawing.clear();
+    place_labels({{&label, -1, {{{50, 50}, 1, {0, -1}, 2}}, 12, {}}}, {}, 100, 100, drawing);
+    EXPECT_LT(std::get<Text>(drawing.at(0).shape).at.y, 50) << "above";
+    drawing.clear();
+    label.side = 6;
+    place_labels({{&label, 6, {{{50, 50}, 1, {0, -1}, 2}}, 12, {}}}, {}, 100, 100, drawing);
+    EXPECT_GT(std::get<Text>(drawing.at(0).shape).at.y + box.top, 52) << "below, as asked";
+}
+
+TEST(Labels, BehindASurfaceAreFainterOrAbsent) {
+    std::vector<double> opacity;
+    for (const Hidden hidden : {Hidden::show, Hidden::ghost, Hidden::hide}) {
+        Scene scene = from_above(4, 100, 100, 1);
+        add_sheet(scene, 1, 1);
+        SceneObject& o = add(scene, Kind::point);
+        o.label.text = parse_math_text("A");
+        o.label.hidden = hidden;
+        const Camera camera = make_camera(scene.camera, drawn_points(scene), 100, 100);
+        const TracedScene traced = build_traced_scene(scene, 1e-3, {});
+        const Drawing d = overlay(scene, scene.objects, traced, camera, 1, 8);
+        opacity.push_back(d.empty() ? 0 : d.at(0).opacity);
+    }
+    EXPECT_EQ(opacity[0], 1);
+    EXPECT_NEAR(opacity[1], 0.4, 1e-12);
+    EXPECT_EQ(opacity[2], 0);
+}
+
+TEST(Labels, ABallDoesNotHideItsOwnLabel) {
+    Scene scene = from_above(4, 100, 100, 1);
+    SceneObject& o = add(scene, Kind::point);
+    o.radius = 0.5;
+    o.label.text = parse_math_text("A");
+    const Camera camera = make_camera(scene.camera, drawn_points(scene), 100, 100);
+    const TracedScene traced = build_traced_scene(scene, 1e-3, {});
+    const Drawing d = overlay(scene, scene.objects, traced, camera, 1, 8);
+    ASSERT_EQ(d.size(), 1u);
+    EXPECT_EQ(d[0].opacity, 1);
+    const Text& t = std::get<Text>(d[0].shape);
+    const TextBox box = text_box(t.text, t.size);
+    const double dx = std::max({t.at.x + box.left - 50, 50 - t.at.x - box.right, 0.0}), dy = std::max({t.at.y + box.top - 50, 50 - t.at.y - box.bottom, 0.0});
+    EXPECT_GE(std::hypot(dx, dy), 12.5) << "clear of the ball of 12.5 pixels";
+}
+
+TEST(Labels, NetsAreLabelledWithTheirIndices) {
+    const auto texts = [](const std::string& definition) {
+        const Scene s = scene_from("{ \"isoparm\": 1, \"surfaces\": {}, " + definition + ", \"objects\": [{ \"net\": \"N\", \"labels\": \"P\" }] }");
+        std::string all;
+        for (const Label& l : s.objects[0].net_labels) all += plain(l.text) + " ";
+        return all;
+    };
+    EXPECT_EQ(texts(R"("curves": { "N": { "type": "bezier", "points": [[0,0,0], [1,0,0], [2,1,0]] } })"), "P0 P1 P2 ");
+    const auto surface = [](const std::string& definition) {
+        const Scene s = scene_from("{ \"isoparm\": 1, \"surfaces\": { \"N\": " + definition + "}, \"objects\": [{ \"net\": \"N\", \"labels\": {\"text\": \"P\", \"size\": 9} }] }");
+        std::string all;
+        for (const Label& l : s.objects[0].net_labels) all += plain(l.text) + " ";
+        EXPECT_EQ(s.objects[0].net_labels[0].size, 9);
+        return all;
+    };
+    EXPECT_EQ(surface(R"({ "type": "bezier", "points": [[[0,0,0], [0,1,0], [0,2,0]], [[1,0,0], [1,1,0], [1,2,0]]] })"), "P00 P01 P02 P10 P11 P12 ");
+    EXPECT_EQ(surface(R"({ "type": "bezier_triangle", "degree": 2, "points": [[0,0,0], [1,0,0], [2,0,0], [0,1,0], [1,1,0], [0,2,0]] })"),
+              "P200 P110 P020 P101 P011 P002 ");
+}
+
+// ---- paint ----------------------------------------------------------------------------------------------------------
+
+TEST(Paint, BlendsInLinearLightAndOverNothing) {
+    Image image{4, 4, std::vector<float>(64, 0)};
+    for (int i = 0; i < 8; ++i)  // the upper half white, the lower transparent
+        for (int k = 0; k < 4; ++k) image.pixels[4 * i + k] = 1;
+    paint({{Filled{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}}, {0.5, 0, 0}, 0.25}}, 0, 0, image);
+    EXPECT_NEAR(image.at(1, 0)[0], 0.25 * 0.5 + 0.75, 1e-6);
+    EXPECT_NEAR(image.at(1, 0)[1], 0.75, 1e-6);
+    EXPECT_EQ(image.at(1, 0)[3], 1);
+    EXPECT_NEAR(image.at(1, 3)[0], 0.125, 1e-6);  // premultiplied
+    EXPECT_NEAR(image.at(1, 3)[3], 0.25, 1e-6);
+}
+TEST(Paint, CoversTheAreaThatGeometryHas) {
+    Image image{40, 30, std::vector<float>(4800, 0)};
+    paint({{Filled{{{3.25, 4.5}, {33.25, 4.5}, {3.25, 24.5}}}, {1, 1, 1}, 1}}, 0, 0, image);
+    EXPECT_NEAR(sum(image, 3), 300, 0.02 * 300);  // Cairo counts in 255ths and samples each pixel 15 x 17 times
+    Image line{40, 30, std::vector<float>(4800, 0)};
+    paint({{Polyline{{{5.3, 15.2}, {35.3, 15.2}}, 2.5, {}, false}, {1, 1, 1}, 1}}, 0, 0, line);
+    EXPECT_NEAR(sum(line, 3), 75, 0.02 * 75);
+}
+
+}  // namespace
+}  // namespace isoparm
