@@ -104,7 +104,7 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     }
     const Point normal = cross(x[0], x[1]);
     const double twice_area = length(normal), longest = std::max({side[0], side[1], side[2]});
-    const bool flat = twice_area > 1e-9 * longest * longest;  // else too thin to have a normal
+    const bool flat = twice_area > 1e-9 * longest * longest && twice_area > 1e-140;  // else too thin, or too small, to have a normal
     const Point n = flat ? normal / twice_area : Point{};
 
     // How far H strays from H(m) in the triangle: along unit vectors by `size` of the third derivatives.

@@ -94,6 +94,11 @@ bool Refinement::bound_and_mark() {
     return done;
 }
 
+bool PatchMesh::on_break(const PatchEdge& e) const {
+    const auto along = [](double a, double b, const std::vector<double>& breaks) { return a == b && std::binary_search(breaks.begin(), breaks.end(), a); };
+    return along(uv[e.a].x, uv[e.b].x, breaks_u) || along(uv[e.a].y, uv[e.b].y, breaks_v);
+}
+
 double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const {
     const PatchTriangle& t = mesh.triangles[triangle];
     double slack = mesh.slack_of(t);
@@ -102,7 +107,7 @@ double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const
     for (int k = 0; k < 3; ++k) {
         const auto& side = mesh.edges[t.edge[k]].side;
         const auto other = side[0] == triangle ? side[1] : side[0];
-        if (other == kNone || mesh.left_out(mesh.triangles[other])) continue;
+        if (other == kNone || mesh.left_out(mesh.triangles[other]) || mesh.on_break(mesh.edges[t.edge[k]])) continue;
         neighbours[k] = &mesh.triangles[other].proof;
         slack = std::max(slack, mesh.slack_of(mesh.triangles[other]));
     }

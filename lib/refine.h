@@ -55,6 +55,7 @@ struct PatchMesh {
     std::vector<std::uint32_t> fresh;   // triangles not bounded yet
     std::vector<std::uint32_t> marked;  // edges to be bisected, those on rims not included
     std::vector<std::unique_ptr<BoundCell>> cells;
+    std::vector<double> breaks_u, breaks_v;  // of the patch
 
     std::array<std::uint32_t, 3> vertices(const PatchTriangle& t) const { return {vertex[t.corner[0]], vertex[t.corner[1]], vertex[t.corner[2]]}; }
     /// Triangles that name a mesh vertex twice, at poles and seams, are segments and left out of the mesh.
@@ -62,6 +63,8 @@ struct PatchMesh {
         const auto [a, b, c] = vertices(t);
         return a == b || b == c || c == a;
     }
+    /// Along a break of the patch, where the surface may jump by the rounding of its curves' breaks.
+    bool on_break(const PatchEdge& e) const;
     /// At least the distance of a corner of the triangle from the surface.
     double slack_of(const PatchTriangle& t) const;
 };

@@ -256,6 +256,7 @@ void Refinement::build_patch(std::uint32_t member, const Start& start) {
         mesh.cells.push_back(std::make_unique<BoundCell>(patch, Box{{0, 1}, {0, 1}}));
         return fill_triangle(build, start.bends[0], start.parts, {side[1], side[2], side[0]});  // C to A to B to C
     }
+    mesh.breaks_u = patch.breaks_u(), mesh.breaks_v = patch.breaks_v();
     const std::vector<double>&us = start.us, &vs = start.vs;
     const std::size_t columns = us.size() - 1, rows = vs.size() - 1;
     // Corners of a side from parameter `from` to `to`, both included.
