@@ -142,7 +142,7 @@ Axes read_axes(const Json& j, const SceneValues& values) {
         const auto range = j.find(kAxisNames[k]);
         if (!range) continue;
         const auto [low, high] = values.interval(*range);
-        Axes::Axis& axis = axes.axis[k].emplace();
+        Axes::Axis& axis = *(axes.axis[k] = Axes::Axis());
         axis.low = low;
         axis.high = high;
         if (ticks) {

@@ -155,7 +155,9 @@ template <class Ray> struct Nielson {
             const double mu = mid(u.c[0]), mv = mid(v.c[0]);
             if (mu + mv > 1 || (u.c[0].lo == u.c[0].hi && v.c[0].lo == v.c[0].hi)) return x;
             // Mean values about the middle, which keep what cancels there.
-            auto u0 = u, v0 = v, w0 = w;
+            auto u0 = u;
+            auto v0 = v;
+            auto w0 = w;
             u0.c[0] = mu, v0.c[0] = mv;
             w0.c[0] = clip(Interval(1) - (u0.c[0] + v0.c[0]), {0, 1});
             const Vec3<JetUV<T, N>> a[3] = {turned(0, ray, u0, v0, w0), turned(1, ray, u0, v0, w0), turned(2, ray, u0, v0, w0)};
