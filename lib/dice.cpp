@@ -10,6 +10,7 @@ constexpr int kSamples = Bends::samples;
 constexpr double kUse = 0.8;          // of the tolerance: the rest is left to third derivatives and to neighbours
 constexpr double kBisected = 2.2;     // what a triangle above the tolerance costs: bisection overshoots
 constexpr double kFew = 1.05, kMany = 0.75;  // of the vertices wanted on a line
+constexpr double kPeak = 64;          // times the median of all samples
 constexpr double kStep = 1.19;        // between the numbers of lines that are tried
 
 /// Error of a triangle whose edges bend by a, b, c.
@@ -137,6 +138,20 @@ Bends::Bends(const Patch& patch, const Box& box, Measure measure) : box_(box) {
             exist_ = exist_ && finite(b.uu) && finite(b.uv) && finite(b.vv);
             bend_[i * samples + k] = b;
         }
+    if (exist_) cut_peaks();
+}
+
+/// A bend far above the others is that of a place narrower than the distance of samples: bisection finds its way there, while rows as
+/// dense as that over the whole width of a sample would be too many.
+void Bends::cut_peaks() {
+    const auto size = [](const Bend& b) { return length(b.uu) + length(b.uv) + length(b.vv); };
+    std::array<double, samples * samples> sizes;
+    std::transform(bend_.begin(), bend_.end(), sizes.begin(), size);
+    const auto median = sizes.begin() + sizes.size() / 2;
+    std::nth_element(sizes.begin(), median, sizes.end());
+    const double most = kPeak * *median;
+    for (Bend& b : bend_)
+        if (const double s = size(b); s > most) b = {most / s * b.uu, most / s * b.uv, most / s * b.vv};
 }
 
 bool Bends::less(const Vec2& p, const Vec2& q, const Vec2& r, const Vec2& s) const {

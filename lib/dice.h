@@ -29,6 +29,8 @@ public:
     bool less(const Vec2& p, const Vec2& q, const Vec2& r, const Vec2& s) const;
 
 private:
+    void cut_peaks();
+
     Box box_;
     bool exist_ = true;
     std::array<Bend, samples * samples> bend_;
