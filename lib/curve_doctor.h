@@ -46,8 +46,7 @@ struct HermiteRepair {
 /// or without it, and negated. Costs of a cross derivative: one when it is not reversed as its curve, one when it is negated.
 Diagnosis<HermiteRepair> diagnose_hermite(const HermiteData& data, Twist twist);
 
-/// u_curves[j] = x(u, v_nodes[j]), v_curves[i] = x(u_nodes[i], v). Curves of a family run over the domain that they share when it
-/// holds the nodes, else from the first node to the last.
+/// u_curves[j] = x(u, v_nodes[j]), v_curves[i] = x(u_nodes[i], v), run as run_over_nodes() says (patches/gordon.h).
 struct CurveNetwork {
     std::vector<Curve> u_curves, v_curves;
     std::vector<double> u_nodes, v_nodes;

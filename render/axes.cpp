@@ -92,8 +92,7 @@ private:
 
     LineLook look() const { return {color_, o_.opacity, o_.line.width * pixel_, {}, o_.line.hidden}; }
     void line(const std::array<Point, 2>& ends) {
-        const auto& [a, d] = ends;
-        const auto points = fine_points({{a, a + (1.0 / 3) * (d - a), a + (2.0 / 3) * (d - a), d}}, camera_);
+        const auto points = fine_points({straight(ends[0], ends[1])}, camera_);
         add_line(points, look(), sight_, clear_, drawing_);
         for (const Point& p : points) obstacles_.push_back({camera_.project(p), 0.5 * o_.line.width * pixel_});
     }

@@ -99,7 +99,7 @@ private:
         return fine_points(cubic_pieces(curve, 1e-5 * size_), camera_);
     }
     std::vector<Point> points_between(const Point& a, const Point& d) const {
-        return fine_points({{a, a + (1.0 / 3) * (d - a), a + (2.0 / 3) * (d - a), d}}, camera_);
+        return fine_points({straight(a, d)}, camera_);
     }
     double in_pixels(double length, const Point& p) const { return length / camera_.pixel_size(camera_.depth(p)); }
     void avoid(const std::vector<Point>& points, double radius) {

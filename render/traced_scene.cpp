@@ -156,7 +156,7 @@ private:
         std::vector<CubicPiece> rods;
         for (const auto& [i, j] : o.net.rods) {
             const Point a = o.net.points.at(i), d = o.net.points.at(j);
-            if (distance(a, d) > 1e-9 * size_) rods.push_back({a, a + (1.0 / 3) * (d - a), a + (2.0 / 3) * (d - a), d});
+            if (distance(a, d) > 1e-9 * size_) rods.push_back(straight(a, d));
         }
         const Color color = o.color.value_or(net_color());
         if (!(o.line.width > 0)) add_tubes(rods, radius, color, o.opacity);

@@ -11,6 +11,8 @@
 namespace isoparm {
 
 using CubicPiece = std::array<Point, 4>;
+/// The straight one from a to d.
+inline CubicPiece straight(const Point& a, const Point& d) { return {a, a + (1.0 / 3) * (d - a), a + (2.0 / 3) * (d - a), d}; }
 
 /// A curve to draw: position and derivative over [begin, end], smooth between breaks.
 struct DrawnCurve {

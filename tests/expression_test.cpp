@@ -143,35 +143,26 @@ TEST(Formula, AChoiceThatJumpsHasNoBoundAcrossItsSwitch) {
     EXPECT_TRUE(out[2].bounded());
 }
 
+/// At t a formula over [0,1] has this value and slope 1, as number, in packs and in its enclosure.
+void expect_slope_one(const char* text, double t, double value) {
+    const Function f = make_formula(formula(text), 0, 1);
+    double number[3];
+    Interval point[3];
+    Pack pack[3];
+    f.taylor(t, 2, number);
+    f.taylor(Interval(t), 2, point);
+    f.taylor(Pack(t), 2, pack);
+    EXPECT_EQ(number[0], value) << text;
+    EXPECT_EQ(number[1], 1) << text;
+    EXPECT_EQ(pack[1][3], 1) << text;
+    EXPECT_TRUE(point[1].contains(1)) << text << ": [" << point[1].lo << ", " << point[1].hi << "]";
+}
 TEST(Formula, AtAKinkAnswersWithThePieceToItsRight) {
-    for (const char* text : {"if(t<=0,0,t)", "if(t>0,t,0)", "if(0<t,t,0)", "if(0>=t,0,t)", "max(0,t)", "max(t,0)", "-min(0,-t)", "(t+abs(t))/2", "(t+abs(-t))/2"}) {
-        const Function f = make_formula(formula(text), 0, 1);
-        double number[3];
-        Interval point[3];
-        Pack pack[3];
-        f.taylor(0.0, 2, number);
-        f.taylor(Interval(0), 2, point);
-        f.taylor(Pack(0.0), 2, pack);
-        EXPECT_EQ(number[0], 0) << text;
-        EXPECT_EQ(number[1], 1) << text;
-        EXPECT_EQ(pack[1][3], 1) << text;
-        EXPECT_TRUE(point[1].contains(1)) << text << ": [" << point[1].lo << ", " << point[1].hi << "]";
-    }
+    for (const char* text : {"if(t<=0,0,t)", "if(t>0,t,0)", "if(0<t,t,0)", "if(0>=t,0,t)", "max(0,t)", "max(t,0)", "-min(0,-t)", "(t+abs(t))/2", "(t+abs(-t))/2"})
+        expect_slope_one(text, 0, 0);
 }
 TEST(Formula, AtTheEndOfItsDomainAnswersWithThePieceToItsLeft) {
-    for (const char* text : {"if(t<1,t,1)", "if(t>=1,1,t)", "min(t,1)", "min(1,t)", "1-abs(t-1)", "1-abs(1-t)"}) {
-        const Function f = make_formula(formula(text), 0, 1);
-        double number[3];
-        Interval point[3];
-        Pack pack[3];
-        f.taylor(1.0, 2, number);
-        f.taylor(Interval(1), 2, point);
-        f.taylor(Pack(1.0), 2, pack);
-        EXPECT_EQ(number[0], 1) << text;
-        EXPECT_EQ(number[1], 1) << text;
-        EXPECT_EQ(pack[1][3], 1) << text;
-        EXPECT_TRUE(point[1].contains(1)) << text;
-    }
+    for (const char* text : {"if(t<1,t,1)", "if(t>=1,1,t)", "min(t,1)", "min(1,t)", "1-abs(t-1)", "1-abs(1-t)"}) expect_slope_one(text, 1, 1);
 }
 TEST(Formula, OverADomainMustBeFiniteAndMustNotJump) {
     for (const char* text : {"t/(2*t-1)", "if(t<0.5,0,1)", "if(t<=0,0,1)", "if(t<1,0,1)", "sqrt(0.5-t)"}) EXPECT_THROW(make_formula(formula(text), 0, 1), Error) << text;

@@ -180,10 +180,8 @@ Curve derivative_curve(const Curve& c) {
 }
 
 Curve divided_difference(const Curve& c, CurveEnd end, int times) {
-    const bool first = end == CurveEnd::first;
-    if (!c.bezier()) return Curve(std::make_shared<DividedDifference>(c, first ? c.begin() : c.end(), times));
-    const auto once = rational_difference(*c.bezier(), end);
-    if (!once) return Curve(std::make_shared<DividedDifference>(c, first ? c.begin() : c.end(), times));
+    const auto once = c.bezier() ? rational_difference(*c.bezier(), end) : std::nullopt;
+    if (!once) return Curve(std::make_shared<DividedDifference>(c, end == CurveEnd::first ? c.begin() : c.end(), times));
     return times == 1 ? *once : divided_difference(*once, end, times - 1);
 }
 

@@ -1,6 +1,8 @@
 #include "patches/cross_data.h"
 
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "curves/difference.h"
 #include "curves/modify.h"
@@ -17,24 +19,33 @@ void require_continuity(const std::string& name, const Curve& c, int least, cons
         if (b.continuity < least) throw_input("found " + name + " with a " + (b.continuity < 0 ? "jump" : "corner") + " at " + to_text(b.t) + ", expected " + expected);
 }
 
-/// Proves that c is C1, with a Lipschitz derivative: every point is inside an interval with bounded second coefficients. The intervals
-/// overlap, so that a corner is not passed over where two of them meet.
-void require_no_corner(const std::string& name, const Curve& c) {
-    if (c.bezier()) return;  // its breaks tell
+/// A place in [0,1] where `proved` does not hold, though intervals are halved down to 1e-7; none when it holds everywhere.
+template <class Proved> std::optional<double> unproved(Proved proved) {
     std::vector<Interval> open{{0, 1}};
     while (!open.empty()) {
         const Interval t = open.back();
         open.pop_back();
-        const double width = t.hi - t.lo;
-        Vec3<Interval> x[3];
-        c.taylor(Interval(std::max(0.0, t.lo - width / 64), std::min(1.0, t.hi + width / 64)), 2, x);
-        if (x[2].x.bounded() && x[2].y.bounded() && x[2].z.bounded()) continue;
-        if (width < 1e-7)
-            throw_input("found " + name + " with a derivative that is not proved to be continuous near " + to_text(std::round(1e6 * mid(t)) / 1e6) +
-                        ", expected one without corners, as the surface is built from its derivative");
+        if (proved(t)) continue;
+        if (t.hi - t.lo < 1e-7) return mid(t);
         open.push_back({mid(t), t.hi});
         open.push_back({t.lo, mid(t)});
     }
+    return std::nullopt;
+}
+
+/// Proves that c is C1, with a Lipschitz derivative: every point is inside an interval with bounded second coefficients. The intervals
+/// overlap, so that a corner is not passed over where two of them meet.
+void require_no_corner(const std::string& name, const Curve& c) {
+    if (c.bezier()) return;  // its breaks tell
+    const auto corner = unproved([&](const Interval& t) {
+        const double margin = (t.hi - t.lo) / 64;
+        Vec3<Interval> x[3];
+        c.taylor(Interval(std::max(0.0, t.lo - margin), std::min(1.0, t.hi + margin)), 2, x);
+        return x[2].x.bounded() && x[2].y.bounded() && x[2].z.bounded();
+    });
+    if (corner)
+        throw_input("found " + name + " with a derivative that is not proved to be continuous near " + to_text(std::round(1e6 * *corner) / 1e6) +
+                    ", expected one without corners, as the surface is built from its derivative");
 }
 
 /// Scaled by a power of 2 to a length of about 1, for squares of it are taken.
@@ -47,21 +58,16 @@ Curve scaled_to_unit(const Curve& c) {
     return exponent == 0 ? c : linear_combination({std::ldexp(1.0, -exponent)}, {c});
 }
 
-/// Proves that c is not 0 anywhere (nor so small that squares vanish), by intervals that are halved where they do not show it.
+/// Proves that c is not 0 anywhere (nor so small that squares vanish).
 void require_nonzero(const std::string& name, const Curve& c) {
-    std::vector<Interval> open{{0, 1}};
-    while (!open.empty()) {
-        const Interval t = open.back();
-        open.pop_back();
+    const auto zero = unproved([&](const Interval& t) {
         Vec3<Interval> x;
         c.taylor(t, 0, &x);
         const auto nonzero = [](const Interval& a) { return a.lo > 1e-100 || a.hi < -1e-100; };
-        if (nonzero(x.x) || nonzero(x.y) || nonzero(x.z)) continue;
-        if (t.hi - t.lo < 1e-7)
-            throw_input("found " + name + " with length " + to_text(length(c(mid(t)))) + " at " + to_text(mid(t)) + ", expected a normal, which is not 0 anywhere on the edge");
-        open.push_back({mid(t), t.hi});
-        open.push_back({t.lo, mid(t)});
-    }
+        return nonzero(x.x) || nonzero(x.y) || nonzero(x.z);
+    });
+    if (zero)
+        throw_input("found " + name + " with length " + to_text(length(c(*zero))) + " at " + to_text(*zero) + ", expected a normal, which is not 0 anywhere on the edge");
 }
 
 /// |sine| of the angle by which a and b fail to be parallel, or to be at a right angle; 0 where one of them is 0.

@@ -24,11 +24,7 @@ struct TriangleEdges {
 };
 
 /// 1 - t, kept inside [0,1] where rounding outward would leave it.
-template <class T, int I, int J, int N> Jet<T, I, J, N> from_other_end(const Jet<T, I, J, N>& t) {
-    Jet<T, I, J, N> r = 1.0 - t;
-    if constexpr (std::is_same_v<T, Interval>) r.c[0] = clip(r.c[0], {0, 1});
-    return r;
-}
+template <class T, int I, int J, int N> Jet<T, I, J, N> from_other_end(const Jet<T, I, J, N>& t) { return kept_in(1.0 - t, 0, 1); }
 inline Polynomial from_other_end(const Polynomial& t) { return Polynomial(1) - t; }
 
 /// f(k, x, y, z) for k = 0, 1, 2 with the barycentric coordinates turned so that x belongs to vertex k. f returns the same type for all k.
