@@ -84,9 +84,9 @@ struct Wave {
 };
 Curve wave(Random& r, const Point& from, const Point& to) { return make_curve(Wave{from, to, r.vector(2)}); }
 
-/// A rational cubic with weights of 1e-3 to 1e3; a narrow bump beside the far end; a corner that no break tells of.
+/// A rational cubic with weights of 1/30 to 30 (1e3 would take a million triangles); a narrow bump beside the far end; a corner that no break tells of.
 Curve heavy(Random& r, const Point& from, const Point& to) {
-    return make_bezier({from, 0.7 * from + 0.3 * to + r.vector(0.5), 0.3 * from + 0.7 * to + r.vector(0.5), to}, {1, 1e3, 1e-3, 1});
+    return make_bezier({from, 0.7 * from + 0.3 * to + r.vector(0.5), 0.3 * from + 0.7 * to + r.vector(0.5), to}, {1, 30, 1 / 30.0, 1});
 }
 struct Bump {
     Point from, to;
