@@ -155,7 +155,7 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     // Quiet: lenses around the edges meet at corners only, and the map to the plane of L keeps its orientation.
     std::array<Point, 3> inward;  // in the plane, across edge k
     std::array<double, 3> across;  // at least |inward_k . H[e_k,e_k]|
-    bool quiet = result.tilt <= 1e-3;
+    bool quiet = true;
     for (int k = 0; k < 3; ++k) {
         inward[k] = cross(n, x[k]) / side[k];
         across[k] = safe(std::fabs(dot(inward[k], b[k])) + q[k] + 2 * result.tilt * bend[k]);
@@ -169,7 +169,15 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
         return 0.5 * (along_f(0) + along_f(1) + along_f(2) + along_f(k));
     };
     const double all = 0.5 * (bend[0] + bend[1] + bend[2]), ji = slope(inward[i], j), ij = slope(inward[j], i), ii = slope(inward[i], i);
-    quiet = quiet && (side[i] + all + 0.5 * bend[i]) * ji + side[j] * ij + (all + 0.5 * bend[j]) * ii <= 0.98 * twice_area;
+    const double folds = safe((side[i] + all + 0.5 * bend[i]) * ji + side[j] * ij + (all + 0.5 * bend[j]) * ii);
+    if (!(folds <= 0.98 * twice_area && result.tilt <= 1e-3)) return result;
+    // Over the plane of n, S rises by at most this along its derivative in the direction e_k, whose length is at most side + reach.
+    const auto rise = [&](int k) {
+        const auto along_n = [&](int edge) { return std::fabs(bn[edge]) + qn[edge] + 2 * result.tilt * bend[edge]; };
+        return 0.5 * (along_n(0) + along_n(1) + along_n(2) + along_n(k)) + 2 * result.tilt * side[k];
+    };
+    const auto reach = [&](int k) { return 1.001 * side[k] + all + 0.5 * bend[k]; };
+    result.turn = safe(rise(i) * reach(j) + rise(j) * reach(i)) / (0.99 * twice_area - folds) * kSafe;
     if (!quiet) return result;
     result.quiet = true;
     result.normal = safe(0.5 * largest_form(bn, qn) + result.tilt * result.parametric);

@@ -35,8 +35,8 @@ std::uint64_t mesh_edge(const PatchMesh& mesh, const PatchEdge& e) {
 
 double PatchMesh::slack_of(const PatchTriangle& t) const { return std::max({slack[t.corner[0]], slack[t.corner[1]], slack[t.corner[2]]}); }
 
-Refinement::Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most)
-    : surface_(surface), topology_(topology), tolerance_(tolerance), measure_(measure), positions_(topology.nodes), shared_(topology.nodes.size(), 1),
+Refinement::Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most, double turn)
+    : surface_(surface), topology_(topology), tolerance_(tolerance), measure_(measure), turn_(turn), positions_(topology.nodes), shared_(topology.nodes.size(), 1),
       patches_(surface.size()) {
     start(most);
 }
@@ -85,6 +85,9 @@ bool Refinement::bound_and_mark() {
                 unbounded_ += !std::isfinite(bound);
                 predicted_ += std::isfinite(bound) ? bound / tolerance_ - 1 : 0;
                 worst_bound_ = std::max(worst_bound_, bound);
+            } else if (!turns_little(mesh, t)) {
+                mark_to_split(t.edge[t.proof.worst_edge]);
+                predicted_ += std::isfinite(t.proof.turn) ? t.proof.turn / turn_ - 1 : 0;
             }
             for (auto e : t.edge)
                 if (mesh.vertex[mesh.edges[e].a] == mesh.vertex[mesh.edges[e].b] && !collapsed(mesh.edges[e])) mark_to_split(e);
@@ -92,6 +95,13 @@ bool Refinement::bound_and_mark() {
         mesh.fresh.clear();
     }
     return done;
+}
+
+bool Refinement::turns_little(const PatchMesh& mesh, const PatchTriangle& t) const {
+    if (t.proof.turn <= turn_ || !std::isfinite(turn_) || mesh.left_out(t)) return true;
+    const auto [a, b, c] = mesh.vertices(t);
+    const auto near = [&](std::uint32_t p, std::uint32_t q) { return length(positions_[p] - positions_[q]) <= tolerance_; };
+    return !std::isfinite(t.proof.turn) && near(a, b) && near(b, c) && near(c, a);
 }
 
 bool PatchMesh::on_break(const PatchEdge& e) const {

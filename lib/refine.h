@@ -6,6 +6,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -75,7 +76,9 @@ double edge_parameter(const Patch& patch, int edge, const Vec2& p);
 class Refinement {
 public:
     /// Begins with grids that are about as fine as the tolerance needs; with single cells when those would have more than `most` triangles.
-    Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most = 1e6);
+    /// `turn`: the largest tangent of the angle between a triangle and the surface's normals; geometric measure only.
+    Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most = 1e6,
+               double turn = std::numeric_limits<double>::infinity());
 
     /// Bounds all triangles that have no bound and marks the worst edge of those above the tolerance; true when none is.
     /// Also marks edges whose two ends are one vertex without being collapsed.
@@ -101,6 +104,9 @@ public:
 
     /// What is proved about a triangle, the slack of all corners that count included.
     double bound_of(const PatchMesh& mesh, std::uint32_t triangle) const;
+
+    /// Does the triangle keep the limit of `turn`, or is it so small, and without a bound, that the search for one was given up?
+    bool turns_little(const PatchMesh& mesh, const PatchTriangle& t) const;
 
     /// The largest of a patch, triangles that are left out included.
     double worst_bound_of(std::size_t member) const;
@@ -135,6 +141,7 @@ private:
     const Topology& topology_;
     const double tolerance_;
     const Measure measure_;
+    const double turn_;
     std::vector<Point> positions_;
     std::vector<char> shared_;                 // by mesh vertex: on a rim, so that several corners may be it
     std::vector<RimNode> rim_nodes_;

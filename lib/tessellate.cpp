@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -134,17 +135,36 @@ double optimal_triangles(const Patch& patch, double tolerance) {
     return (2 / (3 * std::sqrt(3.0)) * convex + 1 / (2 * std::sqrt(5.0)) * saddle) / tolerance;
 }
 
+/// Upper bounds of angles, in degrees, and the tangent of such a limit, rounded down.
+double degrees_up(double tangent) { return std::atan(tangent) * (180 / M_PI) * (1 + 1e-14); }
+double tangent_down(double degrees) { return std::tan(degrees * (M_PI / 180)) * (1 - 1e-14); }
+
+void report_normals(const Refinement& refinement, Tessellation& result) {
+    double most = 0;
+    for (const PatchMesh& p : refinement.patches())
+        for (const PatchTriangle& t : p.triangles) {
+            if (p.left_out(t)) continue;
+            if (std::isfinite(t.proof.turn)) most = std::max(most, t.proof.turn);
+            else ++result.normals_unproved;
+        }
+    result.normal_deviation = degrees_up(most);
+}
+
 }  // namespace
 
 Tessellation tessellate(const Composite& surface, const TessellationOptions& options) {
     if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) throw_input("found tolerance " + to_text(options.tolerance) + ", expected a positive number");
+    if (!(options.normal_deviation >= 0 && options.normal_deviation < 90))
+        throw_input("found a normal deviation of " + to_text(options.normal_deviation) + " degrees, expected one from 0 (any) to below 90");
+    if (options.normal_deviation > 0 && options.measure != Measure::geometric) throw_input("a limit of the normal deviation needs the geometric measure");
     auto start = std::chrono::steady_clock::now();
     const double diagonal = surface.empty() ? 0 : bounding_box(surface).diagonal();
     // Fourth powers of lengths must stay in the range of doubles.
     if (!surface.empty() && !(diagonal > 1e-70 && diagonal < 1e70))
         throw_input("found a surface of size " + to_text(diagonal) + ", expected one between 1e-70 and 1e70 to tessellate; scale the data");
     const Topology topology = find_topology(surface, join_tolerance(options.tolerance, diagonal));
-    Refinement refinement(surface, topology, options.tolerance, options.measure, double(options.max_triangles));
+    const double turn = options.normal_deviation > 0 ? tangent_down(options.normal_deviation) : std::numeric_limits<double>::infinity();
+    Refinement refinement(surface, topology, options.tolerance, options.measure, double(options.max_triangles), turn);
     refine(refinement, options);
 
     Tessellation result;
@@ -163,6 +183,7 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
         result.certified_error = std::max(result.certified_error, part.certified_error);
         result.surfaces.push_back({part.name, part.triangles.size(), part.certified_error, optimal_triangles(surface[m].patch, options.tolerance)});
     }
+    if (options.measure == Measure::geometric) report_normals(refinement, result);
     result.sampled_error = refinement.sampled_error();
     result.seconds_sample = seconds_since(start);
     return result;

@@ -14,6 +14,7 @@ namespace isoparm {
 struct TessellationOptions {
     double tolerance = 0;                    // scene units, absolute, > 0: largest distance between mesh and surface, both ways
     Measure measure = Measure::parametric;   // geometric: the distance of the two sets; parametric: of points at equal parameters, never less
+    double normal_deviation = 0;             // degrees, below 90: largest angle between a triangle's normal and those of the surface over it; 0: any
     std::size_t max_triangles = 20'000'000;  // budget; beyond it tessellate() throws Error(budget)
     std::function<void(double)> progress;    // called from the calling thread with a fraction in [0,1]; may be empty
 };
@@ -31,6 +32,8 @@ struct Tessellation {
     double tolerance = 0;
     double certified_error = 0;  // proved: no point of either set is farther from the other; rounded up
     double sampled_error = 0;    // largest distance at equal parameters seen at sample points (parametric, as the certificate)
+    double normal_deviation = 0;  // degrees: proved for all triangles but normals_unproved; 0 with the parametric measure, which says nothing
+    std::size_t normals_unproved = 0;  // triangles about whose normals nothing is proved; with options.normal_deviation smaller than the tolerance, at singular points
     std::vector<SurfaceReport> surfaces;
     double seconds_tessellate = 0, seconds_sample = 0;
 };

@@ -34,11 +34,13 @@ that patches share are found and share their vertices.
 --tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal; otherwise the scene's
 --measure M       geometric (default): the distance of the two sets, both ways; parametric: of points at equal parameters,
                   |S(u,v)-L(u,v)|, which is never less and needs more triangles
+--normals DEGREES the largest angle between a triangle and the surface's normals over it, below 90, proved as well; triangles smaller
+                  than the tolerance at poles and apexes are left out and counted (exit code 1). Not with parametric or .stl
 --quality Q       fast; optimal is not built yet
 --vertices V      surface: vertices lie on the surface; free is not built yet
 --max-triangles N the budget, 20000000; beyond it the command ends with exit code 2 and says what was reached
 --report FILE     JSON: triangles, vertices, tolerance, measure, certified_error, sampled_error, boundary_loops,
-                  t_junctions, non_manifold_edges, seconds, surfaces (with the asymptotic optimum of triangles),
+                  t_junctions, non_manifold_edges, normal_deviation (degrees, of all triangles but normals_unproved), seconds, surfaces (with the asymptotic optimum of triangles),
                   format_rounding (how far float32 moves points in .stl; part of certified_error); - is standard output
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
 --quiet           no messages; --threads N  at most N threads: the mesh is the same for every N
@@ -147,6 +149,7 @@ void write_report(std::ostream& out, const Tessellation& t, const Selection& sel
     out << "{\"triangles\": " << t.mesh.triangle_count() << ", \"vertices\": " << t.mesh.positions.size() << ",\n \"tolerance\": " << json_text(t.tolerance)
         << ", \"measure\": " << json_text(measure) << ", \"certified_error\": " << json_text(t.certified_error) << ", \"sampled_error\": " << json_text(t.sampled_error)
         << ", \"format_rounding\": " << json_text(format_rounding)
+        << ",\n \"normal_deviation\": " << (measure == "geometric" ? json_text(t.normal_deviation) : "null") << ", \"normals_unproved\": " << t.normals_unproved
         << ",\n \"boundary_loops\": " << t.topology.boundary_loops << ", \"boundary_edges\": " << t.topology.boundary_edges << ", \"t_junctions\": " << t.topology.t_junctions
         << ", \"non_manifold_edges\": " << t.topology.non_manifold_edges << ", \"degenerate_triangles\": " << t.topology.degenerate_triangles
         << ",\n \"seconds\": {\"tessellate\": " << json_text(t.seconds_tessellate) << ", \"sample\": " << json_text(t.seconds_sample) << ", \"write\": " << json_text(seconds_write)
@@ -168,7 +171,7 @@ std::string mesh_comment(const Scene& scene, const Tessellation& t) {
 int run(const std::vector<std::string>& arguments) {
     const Options options("tessellate", arguments,
                           {{"-o", true}, {"--surface", true}, {"--tolerance", true}, {"--measure", true}, {"--quality", true}, {"--vertices", true},
-                           {"--max-triangles", true}, {"--report", true}, {"--set", true}, {"--certificate", true, "the report holds the certified error"}});
+                           {"--max-triangles", true}, {"--report", true}, {"--set", true}, {"--normals", true}, {"--certificate", true, "the report holds the certified error"}});
     const std::string output = options.required("-o", "the mesh file to write");
     check_output(output, options);
     const std::string measure = options.word("--measure", {"geometric", "parametric"});
@@ -190,6 +193,11 @@ int run(const std::vector<std::string>& arguments) {
     TessellationOptions how;
     how.tolerance = tolerance - reserved;
     how.measure = measure == "parametric" ? Measure::parametric : Measure::geometric;
+    if (const auto degrees = options.number("--normals")) {
+        if (!(*degrees > 0 && *degrees < 90)) options.fail("--normals: found " + to_text(*degrees) + ", expected degrees above 0 and below 90");
+        if (measure == "parametric" || stl) options.fail("--normals: proved with --measure geometric, of a mesh in .ply or .obj");
+        how.normal_deviation = *degrees;
+    }
     if (const auto most = options.integer("--max-triangles", 1, 2'000'000'000)) how.max_triangles = static_cast<std::size_t>(*most);
     Tessellation result = [&] {
         ProgressBar bar("tessellating", options.quiet());
@@ -215,6 +223,10 @@ int run(const std::vector<std::string>& arguments) {
     if (!options.quiet()) {
         std::fprintf(stderr, "%s: %zu triangles, %zu vertices, certified error %.3g (tolerance %.3g), %.2f s\n", output.c_str(), result.mesh.triangle_count(),
                      result.mesh.positions.size(), result.certified_error, result.tolerance, result.seconds_tessellate + result.seconds_sample + seconds);
+    }
+    if (how.normal_deviation > 0 && result.normals_unproved > 0) {
+        std::fprintf(stderr, "isoparm: warning: nothing is proved about the normals of %zu triangles, all smaller than the tolerance, at singular points\n", result.normals_unproved);
+        return kWarning;
     }
     return kSuccess;
 }
