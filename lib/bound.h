@@ -28,6 +28,7 @@ struct TriangleBound {
     double turn = none;                  // at least the tangent of the angle between unit and the normal of S, anywhere; geometric measure only
     bool quiet = false;                  // S bends so little that it lies over L as a graph, and lenses around its edges do not meet
     int worst_edge = 0;                  // edge (corner k, k+1) whose bisection gains most
+    int worst_turn = 0;                  // the same for turn
     int worst_across = 0;                // the same for the part of d along the triangle's plane
 
     /// What has to be small for the measure.

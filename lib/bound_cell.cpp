@@ -36,6 +36,36 @@ double largest_form(const std::array<double, 3>& b, const std::array<double, 3>&
     return std::max(simplex_maximum(q[0] + b[0], q[1] + b[1], q[2] + b[2]), simplex_maximum(q[0] - b[0], q[1] - b[1], q[2] - b[2]));
 }
 
+/// An upper bound of the tangent of the angle between n and the normals of S: x the mesh's edges, b = H(m)[e_k,e_k], q what H strays from it
+/// along e_k, slack how far the mesh's corners are from S. `worst`: the edge along which the normal turns most.
+double turn_of(const Point& n, const std::array<Point, 3>& x, const std::array<Point, 3>& b, const std::array<double, 3>& q, const std::array<double, 3>& side, double slack,
+               int& worst) {
+    // With H(m) in place of H, DS[e_0] and DS[e_1] are linear over the triangle: their values at its corners.
+    const std::array<Point, 3> first{x[0] - 0.5 * b[0], x[0] + 0.5 * b[0], x[0] + 0.5 * (b[2] - b[1])};
+    const std::array<Point, 3> second{x[1] + 0.5 * (b[0] - b[2]), x[1] - 0.5 * b[1], x[1] + 0.5 * b[1]};
+    std::array<Point, 3> normal;
+    for (int c = 0; c < 3; ++c) normal[c] = normalized(cross(first[c], second[c]));
+    const double extent = std::max({side[0], side[1], side[2]});
+    const bool known = finite(normal[0]) && finite(normal[1]) && finite(normal[2]);
+    // Slivers have no bound: an edge counts by its length as well, and alone where normals do not exist.
+    const auto turned = [&](int k) { return (known ? length(normal[kNext[k]] - normal[k]) : 0) + 0.3 * side[k] / extent; };
+    worst = turned(0) >= turned(1) && turned(0) >= turned(2) ? 0 : turned(1) >= turned(2) ? 1 : 2;
+    double longest[2] = {0, 0}, off[2];
+    for (int c = 0; c < 3; ++c) longest[0] = std::max(longest[0], length(first[c])), longest[1] = std::max(longest[1], length(second[c]));
+    for (int k = 0; k < 2; ++k) off[k] = 0.5 * (q[0] + q[1] + q[2] + q[k]) + 2 * slack + kRounding * (side[k] + longest[k]);
+    const double loose = safe(longest[0] * off[1] + longest[1] * off[0] + off[0] * off[1] + kRounding * longest[0] * longest[1]);
+    // Their cross product is quadratic, in the convex cone of its Bernstein coefficients.
+    double turn = 0;
+    for (int c = 0; c < 3; ++c)
+        for (int d = c; d < 3; ++d) {
+            const Point m = 0.5 * (cross(first[c], second[d]) + cross(first[d], second[c]));
+            const double up = dot(n, m) - loose;
+            if (!(up > 0)) return TriangleBound::none;
+            turn = std::max(turn, safe((length(m - dot(n, m) * n) + loose) / up));
+        }
+    return turn;
+}
+
 Box half_of(const Box& box, int k) {
     const double mu = mid(box.u), mv = mid(box.v);
     return {k & 1 ? Interval(mu, box.u.hi) : Interval(box.u.lo, mu), k & 2 ? Interval(mv, box.v.hi) : Interval(box.v.lo, mv)};
@@ -148,6 +178,7 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     const double s_ = triangle.slack;
     result.unit = n;
     result.tilt = safe((8.1 * s_ * (longest + s_) + 33 * 0x1p-53 * longest * longest) / twice_area + 4 * 0x1p-53);
+    result.turn = turn_of(n, x, b, q, side, s_, result.worst_turn);
     std::array<double, 4> along;
     for (int k = 0; k < 4; ++k) along[k] = std::max(0.0, std::fabs(dot(n, s.t[k])) + (least ? -s.t_rad[k] : s.t_rad[k]) + 4 * 0x1p-53 * s.t_size[k]);
     const std::array<double, 3> qn = stray(along), bn{dot(n, b[0]), dot(n, b[1]), dot(n, b[2])};
@@ -155,7 +186,7 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     // Quiet: lenses around the edges meet at corners only, and the map to the plane of L keeps its orientation.
     std::array<Point, 3> inward;  // in the plane, across edge k
     std::array<double, 3> across;  // at least |inward_k . H[e_k,e_k]|
-    bool quiet = true;
+    bool quiet = result.tilt <= 1e-3;
     for (int k = 0; k < 3; ++k) {
         inward[k] = cross(n, x[k]) / side[k];
         across[k] = safe(std::fabs(dot(inward[k], b[k])) + q[k] + 2 * result.tilt * bend[k]);
@@ -169,15 +200,7 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
         return 0.5 * (along_f(0) + along_f(1) + along_f(2) + along_f(k));
     };
     const double all = 0.5 * (bend[0] + bend[1] + bend[2]), ji = slope(inward[i], j), ij = slope(inward[j], i), ii = slope(inward[i], i);
-    const double folds = safe((side[i] + all + 0.5 * bend[i]) * ji + side[j] * ij + (all + 0.5 * bend[j]) * ii);
-    if (!(folds <= 0.98 * twice_area && result.tilt <= 1e-3)) return result;
-    // Over the plane of n, S rises by at most this along its derivative in the direction e_k, whose length is at most side + reach.
-    const auto rise = [&](int k) {
-        const auto along_n = [&](int edge) { return std::fabs(bn[edge]) + qn[edge] + 2 * result.tilt * bend[edge]; };
-        return 0.5 * (along_n(0) + along_n(1) + along_n(2) + along_n(k)) + 2 * result.tilt * side[k];
-    };
-    const auto reach = [&](int k) { return 1.001 * side[k] + all + 0.5 * bend[k]; };
-    result.turn = safe(rise(i) * reach(j) + rise(j) * reach(i)) / (0.99 * twice_area - folds) * kSafe;
+    quiet = quiet && (side[i] + all + 0.5 * bend[i]) * ji + side[j] * ij + (all + 0.5 * bend[j]) * ii <= 0.98 * twice_area;
     if (!quiet) return result;
     result.quiet = true;
     result.normal = safe(0.5 * largest_form(bn, qn) + result.tilt * result.parametric);
@@ -206,7 +229,7 @@ const BoundCell* BoundCell::child(const Patch& patch, const Box& of) const {
     return expected;  // another thread was faster, with the same numbers
 }
 
-TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure) {
+TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure, double turn) {
     const Box box = box_of(triangle.uv);
     const auto width = [](const Interval& x) { return x.hi - x.lo; };
     while (width(cell->box_.u) > kLarge * width(box.u) && width(cell->box_.v) > kLarge * width(box.v)) {
@@ -218,7 +241,7 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
         double help = 1;  // where the cell tells nothing
         if (cell->model_.bounded) {
             const TriangleBound b = bound_triangle(cell->model_, triangle, measure);
-            if (b.own(measure) <= tolerance) return b;
+            if (b.own(measure) <= tolerance && b.turn <= turn) return b;
             // A finer cell helps if the bound may be below the tolerance, and to tell the edges apart.
             const double least = bound_triangle(cell->model_, triangle, measure, true).own(measure);
             help = least > tolerance ? 1 - least / b.own(measure) : 1;

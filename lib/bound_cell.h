@@ -37,7 +37,8 @@ public:
     /// Bounds a triangle of this cell. `cell` is the cell in the tree to begin with; it becomes the one that was used,
     /// which serves the triangle's parts too. Finer cells are made only where they may decide whether `tolerance` is kept.
     /// Safe to call from several threads; the result does not depend on which cells exist.
-    static TriangleBound bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure);
+    static TriangleBound bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure,
+                               double turn = TriangleBound::none);
 
     const SecondDerivatives& model() const { return model_; }
 

@@ -62,7 +62,7 @@ void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t) 
     CornerData data;
     for (int k = 0; k < 3; ++k) data.uv[k] = mesh.uv[t.corner[k]], data.points[k] = positions_[mesh.vertex[t.corner[k]]];
     data.slack = mesh.slack_of(t);
-    t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_);
+    t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_, turn_);
 }
 
 bool Refinement::bound_and_mark() {
@@ -86,7 +86,7 @@ bool Refinement::bound_and_mark() {
                 predicted_ += std::isfinite(bound) ? bound / tolerance_ - 1 : 0;
                 worst_bound_ = std::max(worst_bound_, bound);
             } else if (!turns_little(mesh, t)) {
-                mark_to_split(t.edge[t.proof.worst_edge]);
+                mark_to_split(t.edge[t.proof.worst_turn]);
                 predicted_ += std::isfinite(t.proof.turn) ? t.proof.turn / turn_ - 1 : 0;
             }
             for (auto e : t.edge)
