@@ -14,16 +14,25 @@ namespace {
 
 constexpr std::size_t kPoints = 4096;  // fit the second-level cache with their parameters
 
+Grid<Point> lively_net(int n) {
+    std::mt19937_64 random(20260101);
+    std::uniform_real_distribution<double> height(-1, 1);
+    Grid<Point> net(n, std::vector<Point>(n));
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) net[i][j] = {i + 0.3 * height(random), j + 0.3 * height(random), height(random)};
+    return net;
+}
+
 /// A bicubic B-spline with a lively height; random parameters, and those of a row.
 struct Batch {
     Grid<Point> net;
-    Patch patch;
+    Patch patch, cells;  // one cell; 4 x 4 of them
     BareBfr bfr;
     HandBicubic by_hand;
     std::vector<double> u, v;
     std::vector<double> buffer;
 
-    explicit Batch(const Grid<Point>& n) : net(n), patch(make_bspline_patch(3, 3, knots(), knots(), net)), bfr(net), by_hand(power_form(net)) {
+    Batch() : net(lively_net(4)), patch(make_bspline_patch(3, 3, knots(4), knots(4), net)), cells(make_bspline_patch(3, 3, knots(7), knots(7), lively_net(7))), bfr(net), by_hand(power_form(net)) {
         std::mt19937_64 random(7);
         std::uniform_real_distribution<double> unit(0, 1);
         for (std::size_t i = 0; i < kPoints; ++i) u.push_back(unit(random)), v.push_back(unit(random));
@@ -45,7 +54,12 @@ struct Batch {
         for (std::size_t i = 0; i < kPoints; ++i) bfr.evaluate(u[i], v[i], buffer.data() + 9 * i);
     }
 
-    static std::vector<double> knots() { return {-3, -2, -1, 0, 1, 2, 3, 4}; }
+    /// Uniform, for n control points; the domain is [0,1].
+    static std::vector<double> knots(int n) {
+        std::vector<double> t;
+        for (int k = -3; k <= n; ++k) t.push_back(double(k) / (n - 3));
+        return t;
+    }
     static HandBicubic power_form(const Grid<Point>& net) {
         static constexpr double m[4][4] = {{1, 4, 1, 0}, {-3, 0, 3, 0}, {3, -6, 3, 0}, {-1, 3, -3, 1}};  // over 6: u^i of B-spline k
         HandBicubic s{};
@@ -80,19 +94,10 @@ struct Batch {
     }
 };
 
-Grid<Point> lively_net() {
-    std::mt19937_64 random(20260101);
-    std::uniform_real_distribution<double> height(-1, 1);
-    Grid<Point> net(4, std::vector<Point>(4));
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j) net[i][j] = {i + 0.3 * height(random), j + 0.3 * height(random), height(random)};
-    return net;
-}
-
 }  // namespace
 
 std::vector<Case> batch_cases() {
-    const auto batch = std::make_shared<Batch>(lively_net());
+    const auto batch = std::make_shared<Batch>();
     std::vector<Case> cases;
     const auto add = [&](const std::string& name, auto run, bool reference = false) {
         Case c{"evaluation: bicubic B-spline, positions and both first derivatives", name, "points", [batch, run] {
@@ -111,6 +116,7 @@ std::vector<Case> batch_cases() {
         add("... a row, " + name, [isa](Batch& b) { b.patch.frames(b.u, std::span(b.v).first(1), b.arrays(), isa); });
     }
     add("... the fastest, arrays 4096 bytes apart", [](Batch& b) { b.patch.frames(b.u, b.v, b.arrays(0)); });
+    add("... the fastest, scattered over 4 x 4 cells", [](Batch& b) { b.cells.frames(b.u, b.v, b.arrays()); });
     add("Patch::frame, one by one", [](Batch& b) {
         for (std::size_t i = 0; i < kPoints; ++i) {
             const PointFrame f = b.patch.frame(b.u[i], b.v[i]);
