@@ -31,6 +31,7 @@ struct Batch {
     HandBicubic by_hand;
     std::vector<double> u, v;
     std::vector<double> buffer;
+    std::vector<PointFrame> frames = std::vector<PointFrame>(kPoints);
 
     Batch() : net(lively_net(4)), patch(make_bspline_patch(3, 3, knots(4), knots(4), net)), cells(make_bspline_patch(3, 3, knots(7), knots(7), lively_net(7))), bfr(net), by_hand(power_form(net)) {
         std::mt19937_64 random(7);
@@ -48,7 +49,7 @@ struct Batch {
     }
     void hand(Isa isa) {
         double* const x[9] = {array(0), array(1), array(2), array(3), array(4), array(5), array(6), array(7), array(8)};
-        frames(isa, by_hand, kPoints, u.data(), v.data(), x);
+        bench::frames(isa, by_hand, kPoints, u.data(), v.data(), x);
     }
     void opensubdiv() {
         for (std::size_t i = 0; i < kPoints; ++i) bfr.evaluate(u[i], v[i], buffer.data() + 9 * i);
@@ -117,6 +118,7 @@ std::vector<Case> batch_cases() {
     }
     add("... the fastest, arrays 4096 bytes apart", [](Batch& b) { b.patch.frames(b.u, b.v, b.arrays(0)); });
     add("... the fastest, scattered over 4 x 4 cells", [](Batch& b) { b.cells.frames(b.u, b.v, b.arrays()); });
+    add("the formula in packs of eight", [](Batch& b) { b.patch.frames(kPoints, b.u.data(), b.v.data(), b.frames.data()); });
     add("Patch::frame, one by one", [](Batch& b) {
         for (std::size_t i = 0; i < kPoints; ++i) {
             const PointFrame f = b.patch.frame(b.u[i], b.v[i]);

@@ -1,7 +1,9 @@
 #include "batch.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <string>
 
@@ -113,6 +115,35 @@ int degree_of(const std::vector<PolynomialCells::Form>& forms) {
     return degree_with_loop(degree);
 }
 
+/// Points of several cells, put in the order of their cells, so that the loops have more than one of each.
+struct Block {
+    static constexpr std::size_t most = 512, most_cells = 1024;
+    std::uint32_t cell[most];
+    std::uint16_t from[most];                   // where each sorted point came from
+    double u[most], v[most], x[9][most + 24];  // see docs/performance.md: not 4096 bytes apart
+
+    /// By counting; v may be nullptr.
+    void sort(std::size_t n, std::size_t cells, const double* us, const double* vs) {
+        std::uint16_t place[most_cells + 1] = {};
+        for (std::size_t k = 0; k < n; ++k) ++place[cell[k] + 1];
+        for (std::size_t c = 1; c < cells; ++c) place[c] = static_cast<std::uint16_t>(place[c] + place[c - 1]);
+        std::uint32_t sorted[most];
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t at = place[cell[k]]++;
+            sorted[at] = cell[k], from[at] = static_cast<std::uint16_t>(k);
+            u[at] = us[k], v[at] = vs ? vs[k] : 0;
+        }
+        std::copy(sorted, sorted + n, cell);
+    }
+};
+/// use(first, count) for runs of equal cells.
+template <class Use> void each_run(const std::uint32_t* cell, std::size_t n, Use use) {
+    for (std::size_t first = 0, next; first < n; first = next) {
+        for (next = first + 1; next < n && cell[next] == cell[first];) ++next;
+        use(first, next - first);
+    }
+}
+
 }  // namespace
 
 const char* to_text(Isa isa) { return isa == Isa::avx512 ? "avx512" : isa == Isa::avx2 ? "avx2" : "baseline"; }
@@ -165,7 +196,10 @@ PolynomialCells::PolynomialCells(const std::vector<double>& lines_u, const std::
 
 std::size_t PolynomialCells::cell_at(double u, double v) const {
     const auto index = [](const std::vector<double>& inner, double t) -> std::size_t {
-        return inner.empty() ? 0 : static_cast<std::size_t>(std::upper_bound(inner.begin(), inner.end(), t) - inner.begin());
+        if (inner.size() > 16) return static_cast<std::size_t>(std::upper_bound(inner.begin(), inner.end(), t) - inner.begin());
+        std::size_t k = 0;  // nothing to predict for the processor
+        for (const double x : inner) k += t >= x;
+        return k;
     };
     return index(inner_u_, u) * (inner_v_.size() + 1) + index(inner_v_, v);
 }
@@ -173,21 +207,36 @@ std::size_t PolynomialCells::cell_at(double u, double v) const {
 void PolynomialCells::frames(Isa isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const {
     const bool row = v.size() == 1;
     const BatchKernel kernel = batch_kernel(isa, degree_, rational_, row);
-    const auto run = [&](std::size_t cell, std::size_t first, std::size_t n) {
-        double* to[9];
-        for (int axis = 0; axis < 3; ++axis) {
-            to[axis] = out.position[axis].data() + first;
-            to[3 + axis] = out.du[axis].data() + first, to[6 + axis] = out.dv[axis].data() + first;
-        }
+    const auto run = [&](std::size_t cell, std::size_t n, const double* us, const double* vs, double* const* to) {
         const Cell& c = cells_[cell];
-        kernel(c.c.data(), c.u, c.v, n, u.data() + first, row ? v.data() : v.data() + first, to);
+        kernel(c.c.data(), c.u, c.v, n, us, vs, to);
     };
-    if (cells_.size() == 1) return run(0, 0, u.size());
-    for (std::size_t first = 0, next; first < u.size(); first = next) {  // runs of points in one cell
-        const auto cell_of_point = [&](std::size_t k) { return cell_at(u[k], row ? v[0] : v[k]); };
-        const std::size_t cell = cell_of_point(first);
-        for (next = first + 1; next < u.size() && cell_of_point(next) == cell;) ++next;
-        run(cell, first, next - first);
+    const auto to = [&](std::size_t first) {
+        std::array<double*, 9> x;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            x[axis] = out.position[axis].data() + first, x[3 + axis] = out.du[axis].data() + first, x[6 + axis] = out.dv[axis].data() + first;
+        return x;
+    };
+    if (cells_.size() == 1) return run(0, u.size(), u.data(), v.data(), to(0).data());
+
+    Block block;
+    for (std::size_t first = 0; first < u.size(); first += Block::most) {
+        const std::size_t n = std::min(Block::most, u.size() - first);
+        const double *us = u.data() + first, *vs = row ? v.data() : v.data() + first;
+        for (std::size_t k = 0; k < n; ++k) block.cell[k] = static_cast<std::uint32_t>(cell_at(us[k], row ? *vs : vs[k]));
+        const auto x = to(first);
+        if (cells_.size() <= Block::most_cells && n > 16 && !std::is_sorted(block.cell, block.cell + n)) {
+            block.sort(n, cells_.size(), us, row ? nullptr : vs);
+            each_run(block.cell, n, [&](std::size_t from, std::size_t count) {
+                double* part[9];
+                for (std::size_t i = 0; i < 9; ++i) part[i] = block.x[i] + from;
+                run(block.cell[from], count, block.u + from, row ? vs : block.v + from, part);
+            });
+            for (std::size_t i = 0; i < 9; ++i)
+                for (std::size_t k = 0; k < n; ++k) x[i][block.from[k]] = block.x[i][k];
+        } else {
+            each_run(block.cell, n, [&](std::size_t from, std::size_t count) { run(block.cell[from], count, us + from, row ? vs : vs + from, to(first + from).data()); });
+        }
     }
 }
 

@@ -11,7 +11,7 @@
 #include "patches/cone.h"
 #include "patches/coons.h"
 #include "patches/tensor_bezier.h"
-#include "patches/transformed.h"
+#include "run_program.h"
 #include "samples.h"
 
 namespace isoparm::tests {
@@ -82,7 +82,7 @@ TEST_P(BatchLaw, EveryInstructionSetAndSizeGivesTheSameBits) {
                 for (const auto& x : other.numbers)
                     for (std::size_t i = 0; i < shift; ++i) EXPECT_EQ(x[i], -7) << "written before its beginning";
             }
-        for (std::size_t i = 0; i < n && n < 10; ++i) {  // one by one, each a row of one point
+        for (std::size_t i = 0; i < std::min<std::size_t>(n, 100); ++i) {  // one by one, each a row of one point
             Result one(1);
             patch_.frames(us.subspan(i, 1), vs.subspan(i, 1), one.arrays());
             for (int k = 0; k < 9; ++k) EXPECT_TRUE(one.at(k, 0) == whole.at(k, i) || std::isnan(whole.at(k, i)));
@@ -225,6 +225,22 @@ TEST(Batch, TheEnvironmentNamesAnInstructionSetOfThisMachine) {
         EXPECT_EQ(e.kind(), ErrorKind::usage);
         EXPECT_NE(std::string(e.what()).find("baseline"), std::string::npos) << e.what();
     }
+}
+
+TEST(Batch, PicturesAreTheSameWithEveryInstructionSet) {
+    const test::TemporaryFolder t;
+    const auto picture = [&](const char* isa) {
+        ::setenv("ISOPARM_ISA", isa, 1);
+        const std::string file = t / (std::string("picture_") + isa + ".exr");
+        const test::Outcome o = test::run("render " + test::source_folder() + "/scenes/teapot.json -o " + file + " --size 40x30 --samples 2 --tolerance 1e-2rel --reproducible --quiet");
+        ::unsetenv("ISOPARM_ISA");
+        EXPECT_EQ(o.code, *isa == '?' ? 64 : 0) << o.err;
+        return test::read_all(file);
+    };
+    const std::string baseline = picture("baseline");
+    EXPECT_FALSE(baseline.empty());
+    EXPECT_EQ(picture(to_text(isas_here().back())), baseline);
+    picture("?");
 }
 
 }  // namespace
