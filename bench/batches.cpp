@@ -33,7 +33,9 @@ struct Batch {
     std::vector<double> buffer;
     std::vector<PointFrame> frames = std::vector<PointFrame>(kPoints);
 
-    Batch() : net(lively_net(4)), patch(make_bspline_patch(3, 3, knots(4), knots(4), net)), cells(make_bspline_patch(3, 3, knots(7), knots(7), lively_net(7))), bfr(net), by_hand(power_form(net)) {
+    Batch()
+        : net(lively_net(4)), patch(make_bspline_patch(3, 3, knots(4), knots(4), net)),
+          cells(make_bspline_patch(3, 3, knots(7), knots(7), lively_net(7))), bfr(net), by_hand(power_form(net)) {
         std::mt19937_64 random(7);
         std::uniform_real_distribution<double> unit(0, 1);
         for (std::size_t i = 0; i < kPoints; ++i) u.push_back(unit(random)), v.push_back(unit(random));
@@ -44,7 +46,10 @@ struct Batch {
     static constexpr std::size_t kApart = 24;
     double* array(int k, std::size_t apart = kApart) { return buffer.data() + static_cast<std::size_t>(k) * (kPoints + apart); }
     FrameArrays arrays(std::size_t apart = kApart) {
-        const auto three = [&](int k) { return std::array<std::span<double>, 3>{{{array(k, apart), kPoints}, {array(k + 1, apart), kPoints}, {array(k + 2, apart), kPoints}}}; };
+        const auto three = [&](int k) {
+            const auto one = [&](int i) { return std::span(array(i, apart), kPoints); };
+            return std::array{one(k), one(k + 1), one(k + 2)};
+        };
         return {three(0), three(3), three(6)};
     }
     void hand(Isa isa) {

@@ -235,7 +235,9 @@ void PolynomialCells::frames(Isa isa, std::span<const double> u, std::span<const
             for (std::size_t i = 0; i < 9; ++i)
                 for (std::size_t k = 0; k < n; ++k) x[i][block.from[k]] = block.x[i][k];
         } else {
-            each_run(block.cell, n, [&](std::size_t from, std::size_t count) { run(block.cell[from], count, us + from, row ? vs : vs + from, to(first + from).data()); });
+            each_run(block.cell, n, [&](std::size_t from, std::size_t count) {
+                run(block.cell[from], count, us + from, row ? vs : vs + from, to(first + from).data());
+            });
         }
     }
 }

@@ -41,7 +41,9 @@ struct Result {
 bool same_bits(const Result& a, const Result& b) {
     for (int k = 0; k < 9; ++k)
         for (std::size_t i = 0; i < a.size; ++i)
-            if (std::bit_cast<std::uint64_t>(a.at(k, i)) != std::bit_cast<std::uint64_t>(b.at(k, i)) && !(std::isnan(a.at(k, i)) && std::isnan(b.at(k, i)))) return false;
+            if (std::bit_cast<std::uint64_t>(a.at(k, i)) != std::bit_cast<std::uint64_t>(b.at(k, i)) &&
+                !(std::isnan(a.at(k, i)) && std::isnan(b.at(k, i))))
+                return false;
     return true;
 }
 
@@ -232,7 +234,8 @@ TEST(Batch, PicturesAreTheSameWithEveryInstructionSet) {
     const auto picture = [&](const char* isa) {
         ::setenv("ISOPARM_ISA", isa, 1);
         const std::string file = t / (std::string("picture_") + isa + ".exr");
-        const test::Outcome o = test::run("render " + test::source_folder() + "/scenes/teapot.json -o " + file + " --size 40x30 --samples 2 --tolerance 1e-2rel --reproducible --quiet");
+        const test::Outcome o = test::run("render " + test::source_folder() + "/scenes/teapot.json -o " + file +
+                                          " --size 40x30 --samples 2 --tolerance 1e-2rel --reproducible --quiet");
         ::unsetenv("ISOPARM_ISA");
         EXPECT_EQ(o.code, *isa == '?' ? 64 : 0) << o.err;
         return test::read_all(file);
