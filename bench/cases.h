@@ -36,6 +36,8 @@ struct Case {
 
 /// Points and derivatives beside loops written by hand for the same surfaces.
 std::vector<Case> evaluation_cases();
+/// Positions and first derivatives in batches, by instruction set.
+std::vector<Case> batch_cases();
 /// Certified meshes of scenes at relative tolerances 1e-2 ... 1e-5.
 std::vector<Case> tessellation_cases();
 /// What is proved over what is true, for the triangles of a grid.

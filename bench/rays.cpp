@@ -53,21 +53,25 @@ struct View {
         if (traced.meshes.size() != 1) throw std::logic_error("more than one surface is drawn");
     }
 
-    /// use(ray, hit) for every ray that hits; their number.
+    /// use(rays, hits, n) for the n rays of each packet that hit; their number.
     template <class Use> std::size_t intersect(Use use) const {
         Hit hits[EmbreeScene::packet];
+        Ray hitting[EmbreeScene::packet];
         std::size_t found = 0;
         for (std::size_t k = 0; k < rays.size(); k += EmbreeScene::packet) {
             traced.embree->intersect(&rays[k], EmbreeScene::packet, hits);
+            int n = 0;
             for (int i = 0; i < EmbreeScene::packet; ++i)
-                if (hits[i].found()) use(rays[k + i], hits[i]), ++found;
+                if (hits[i].found()) hitting[n] = rays[k + i], hits[n++] = hits[i];
+            use(hitting, hits, n);
+            found += static_cast<std::size_t>(n);
         }
         return found;
     }
     /// Bare Embree starts its rays at the eye, the renderer where they enter the scene: silhouettes may round either
     /// way.
     void compare() const {
-        const double ours = double(intersect([](const Ray&, const Hit&) {})), theirs = double(robust->intersect_16());
+        const double ours = double(intersect([](const Ray*, const Hit*, int) {})), theirs = double(robust->intersect_16());
         if (std::fabs(ours - theirs) > 1e-4 * theirs) throw std::logic_error("the two do not hit the same mesh");
     }
 };
@@ -93,11 +97,14 @@ void add(std::vector<Case>& cases, const std::string& scene, const std::string& 
         "rtcIntersect16, robust", [](const View& v) { return v.robust->intersect_16(); }, true);
     rays("rtcIntersect16, not robust", [](const View& v) { return v.fast->intersect_16(); });
     rays("rtcIntersect1, robust", [](const View& v) { return v.robust->intersect_1(); });
-    rays("EmbreeScene::intersect", [](const View& v) { return v.intersect([](const Ray&, const Hit&) {}); });
-    rays("... and surfel_at each hit", [](const View& v) {
+    rays("EmbreeScene::intersect", [](const View& v) { return v.intersect([](const Ray*, const Hit*, int) {}); });
+    rays("... and surfels_at its hits", [](const View& v) {
         double sum = 0;
-        const std::size_t found = v.intersect(
-            [&](const Ray& ray, const Hit& hit) { sum += surfel_at(v.traced, v.camera, ray, hit).normal.x; });
+        const std::size_t found = v.intersect([&](const Ray* rays, const Hit* hits, int n) {
+            Surfel surfels[EmbreeScene::packet];
+            surfels_at(v.traced, v.camera, rays, hits, n, surfels);
+            for (int i = 0; i < n; ++i) sum += surfels[i].normal.x;
+        });
         if (!std::isfinite(sum)) throw std::logic_error("a normal is not finite");
         return found;
     });

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "error.h"
 
@@ -35,6 +36,14 @@ std::vector<double> Patch::lines_v() const {
     lines.insert(lines.begin(), rect().v0);
     lines.push_back(rect().v1);
     return lines;
+}
+
+void Patch::frames(std::span<const double> u, std::span<const double> v, const FrameArrays& out, Isa isa) const {
+    bool agree = v.size() == u.size() || v.size() == 1;
+    for (const auto* arrays : {&out.position, &out.du, &out.dv})
+        for (const auto& a : *arrays) agree = agree && a.size() == u.size();
+    if (!agree) throw std::invalid_argument("Patch::frames: v (unless it is one number) and all arrays of the result must have the size of u");
+    impl_->frame_arrays(isa, u, v, out);
 }
 
 Vec3<Interval> Patch::enclose_point(double u, double v) const {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "batch.h"
 #include "curve.h"
 #include "scalar/jet.h"
 #include "scalar/polynomial.h"
@@ -54,6 +55,8 @@ public:
         virtual void points(std::size_t n, const double* u, const double* v, Point* out) const = 0;
         /// n frames; bit for bit the same as frame().
         virtual void frames(std::size_t n, const double* u, const double* v, PointFrame* out) const = 0;
+        /// As Patch::frames(u, v, out), sizes checked.
+        virtual void frame_arrays(Isa isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const = 0;
         virtual Enclosure enclose(const Box& box) const = 0;
         /// Encloses every position over the box; cheaper than enclose().
         virtual Vec3<Interval> enclose_points(const Box& box) const = 0;
@@ -72,6 +75,13 @@ public:
     PointFrame frame(double u, double v) const { return impl_->frame(u, v); }
     void points(std::size_t n, const double* u, const double* v, Point* out) const { impl_->points(n, u, v, out); }
     void frames(std::size_t n, const double* u, const double* v, PointFrame* out) const { impl_->frames(n, u, v, out); }
+    /// The fast way to many positions and first derivatives, at (u[k], v[k]), or at (u[k], v[0]) when v is one number: a row, which is
+    /// several times faster still. Where the surface is polynomial or rational of degree <= 7 between its breaks and
+    /// PolynomialCells::accuracy can be proved, each coordinate is that close to the exact surface; elsewhere it is frame()'s bit for bit.
+    /// The same bits for every instruction set, for rows and for points, and however a batch is cut in parts. Parameters lie in the
+    /// domain; all arrays have u's size, else throws std::invalid_argument. No allocation for polynomial and rational surfaces. This
+    /// machine must run `isa`; there is no reason to give it but to measure.
+    void frames(std::span<const double> u, std::span<const double> v, const FrameArrays& out, Isa isa = chosen_isa()) const;
     Enclosure enclose(const Box& box) const { return impl_->enclose(box); }
     Vec3<Interval> enclose_points(const Box& box) const { return impl_->enclose_points(box); }
     /// Encloses the exact position at (u,v).

@@ -1,7 +1,8 @@
 // patch_model.h -- runs one formula on every scalar: how a patch type becomes a Patch.
 //
 // A formula F has `static constexpr Domain domain` and, on a rectangle, `operator()(u, v)`, on the triangle
-// `operator()(u, v, w)`, templated on the scalars, returning a Vec3. Optional: rect(), breaks_u(), breaks_v().
+// `operator()(u, v, w)`, templated on the scalars, returning a Vec3. Optional: rect(), breaks_u(), breaks_v(), and with the parameters of
+// operator() homogeneous(), the same as polynomials x, y, z and, when rational, their denominator.
 // A formula that is made of cells between its breaks picks its cell by cell_of(breaks, u).
 #pragma once
 #include <algorithm>
@@ -31,6 +32,7 @@ public:
         for (std::size_t i = 0; i + 1 < edges_u_.size(); ++i)
             for (std::size_t j = 0; j + 1 < edges_v_.size(); ++j)
                 exact_.push_back(exact_form({edges_u_[i], edges_u_[i + 1]}, {edges_v_[j], edges_v_[j + 1]}));
+        batch_ = batch_cells();
     }
 
     Domain domain() const override { return F::domain; }
@@ -58,6 +60,22 @@ public:
                         if (!finite) out[k] = frame(u[k], v[k]);  // at a singular corner, whose limits packs do not have
                     },
                     [&](std::size_t k) { out[k] = frame(u[k], v[k]); });
+    }
+    void frame_arrays(Isa isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const override {
+        if (batch_.exist()) return batch_.frames(isa, u, v, out);
+        constexpr std::size_t size = 64;
+        PointFrame block[size];
+        double row[size];
+        if (v.size() == 1) std::fill_n(row, size, v[0]);
+        for (std::size_t k = 0; k < u.size(); k += size) {
+            const std::size_t count = std::min(size, u.size() - k);
+            frames(count, u.data() + k, v.size() == 1 ? row : v.data() + k, block);
+            for (std::size_t i = 0; i < count; ++i)
+                for (int axis = 0; axis < 3; ++axis) {
+                    const auto& c = block[i][axis].c;
+                    out.position[axis][k + i] = c[0], out.du[axis][k + i] = c[1], out.dv[axis][k + i] = c[2];
+                }
+        }
     }
 
     Enclosure enclose(const Box& box) const override {
@@ -149,10 +167,28 @@ private:
     }
     static Point value(const Vec3<JetUV<double, 0>>& p) { return {p.x.c[0], p.y.c[0], p.z.c[0]}; }
 
-    Vec3<Polynomial> exact_form(const Interval& u, const Interval& v) const {
+    /// what(u, v) or what(u, v, w) on the polynomials that are u, v and w over a box.
+    template <class What> static auto on_polynomials(const Interval& u, const Interval& v, What what) {
         const auto x = Polynomial::variable_u(u), y = Polynomial::variable_v(v);
-        if constexpr (F::domain == Domain::quad) return f_(x, y);
-        else return f_(x, y, Polynomial(1) - x - y);
+        if constexpr (F::domain == Domain::quad) return what(x, y);
+        else return what(x, y, Polynomial(1) - x - y);
+    }
+    Vec3<Polynomial> exact_form(const Interval& u, const Interval& v) const { return on_polynomials(u, v, f_); }
+
+    PolynomialCells batch_cells() const {
+        std::vector<PolynomialCells::Form> forms;
+        for (std::size_t i = 0; i + 1 < edges_u_.size(); ++i)
+            for (std::size_t j = 0; j + 1 < edges_v_.size(); ++j)
+                if (const auto* p = exact(i, j)) forms.push_back({p->x, p->y, p->z});
+                else forms.push_back(homogeneous_form({edges_u_[i], edges_u_[i + 1]}, {edges_v_[j], edges_v_[j + 1]}));
+        const auto same = [&](const auto& form) { return !form.empty() && form.size() == forms[0].size(); };
+        return std::all_of(forms.begin(), forms.end(), same) ? PolynomialCells(edges_u_, edges_v_, forms) : PolynomialCells();
+    }
+    /// Empty where there is none.
+    PolynomialCells::Form homogeneous_form(const Interval& u, const Interval& v) const {
+        if constexpr (requires(Polynomial x) { f_.homogeneous(x, x); } || requires(Polynomial x) { f_.homogeneous(x, x, x); })
+            return on_polynomials(u, v, [this](const auto&... x) { return f_.homogeneous(x...); });
+        else return {};
     }
 
     const Vec3<Polynomial>* exact(std::size_t i, std::size_t j) const {
@@ -193,6 +229,7 @@ private:
     Rect rect_;
     std::vector<double> breaks_u_, breaks_v_, edges_u_, edges_v_;
     std::vector<Vec3<Polynomial>> exact_;  // per cell, where the surface is polynomial there
+    PolynomialCells batch_;
 };
 
 template <class F> Patch make_patch(F f) { return Patch(std::make_shared<PatchModel<F>>(std::move(f))); }

@@ -1,6 +1,8 @@
 #include "surfel.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include "isolines.h"
 
@@ -46,7 +48,7 @@ void frames_of(const TracedScene& scene, const Hit* hits, int n, Vec2* at, Point
         if (!patch || done[first]) continue;
         int which[EmbreeScene::packet], count = 0;
         double u[EmbreeScene::packet], v[EmbreeScene::packet];
-        PointFrame found[EmbreeScene::packet];
+        double found[9][EmbreeScene::packet];
         for (int i = first; i < n; ++i) {
             const Thing& thing = scene.things[hits[i].geometry];
             if (thing.patch != patch) continue;
@@ -55,8 +57,12 @@ void frames_of(const TracedScene& scene, const Hit* hits, int n, Vec2* at, Point
             which[count++] = i;
             done[i] = true;
         }
-        patch->frames(static_cast<std::size_t>(count), u, v, found);
-        for (int k = 0; k < count; ++k) frames[which[k]] = found[k];
+        const std::size_t size = static_cast<std::size_t>(count);
+        const auto three = [&](int of) { return std::array<std::span<double>, 3>{{{found[of], size}, {found[of + 1], size}, {found[of + 2], size}}}; };
+        patch->frames({u, size}, {v, size}, {three(0), three(3), three(6)});
+        for (int k = 0; k < count; ++k)
+            for (int axis = 0; axis < 3; ++axis)
+                for (int c = 0; c < 3; ++c) frames[which[k]][axis].c[c] = found[3 * c + axis][k];
     }
 }
 

@@ -43,6 +43,11 @@ struct BezierTriangle {
         if (n.size() == 4) return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
         return {n[0](u, v, w), n[1](u, v, w), n[2](u, v, w)};
     }
+    std::vector<Polynomial> homogeneous(const Polynomial& u, const Polynomial& v, const Polynomial& w) const {
+        std::vector<Polynomial> x;
+        for (const Coordinate& c : n) x.push_back(c(u, v, w));
+        return x;
+    }
     /// Over intervals: by the exact polynomials in (u,v), where the powers of u, v and w do not lose each other.
     template <int N> Vec3<JetUV<Interval, N>> operator()(const JetU<Interval, N>& u, const JetV<Interval, N>& v, const JetUV<Interval, N>&) const
         requires(N > 0)

@@ -66,11 +66,23 @@ struct TensorBezier {
     std::vector<double> breaks_v() const { return inner_v; }
 
     template <class U, class V> auto operator()(const U& u, const V& v) const {
-        const Cell& cell = cells[cell_of(inner_u, u) * (inner_v.size() + 1) + cell_of(inner_v, v)];
+        const Cell& cell = cell_at(u, v);
         return evaluate(cell, local(u, cell.u0, cell.u1), local(v, cell.v0, cell.v1));
+    }
+    std::vector<Polynomial> homogeneous(const Polynomial& u, const Polynomial& v) const {
+        const Cell& cell = cell_at(u, v);
+        return coordinates(cell, local(u, cell.u0, cell.u1), local(v, cell.v0, cell.v1));
     }
 
 private:
+    template <class U, class V> const Cell& cell_at(const U& u, const V& v) const { return cells[cell_of(inner_u, u) * (inner_v.size() + 1) + cell_of(inner_v, v)]; }
+    static std::vector<Polynomial> coordinates(const Cell& cell, const Polynomial& s, const Polynomial& t) {
+        std::vector<Polynomial> bu, bv, x;
+        bernstein(int(cell.n[0].c.size()) - 1, s, bu);
+        bernstein(int(cell.n[0].c[0].size()) - 1, t, bv);
+        for (const Coordinate& c : cell.n) x.push_back(c(s, t, bu, bv));
+        return x;
+    }
     /// From [from, to] to [0, 1]. Over intervals the width is one too: to - from is rounded.
     template <class S> static S local(const S& t, double from, double to) {
         using T = std::decay_t<decltype(base(t))>;
@@ -105,11 +117,9 @@ private:
         return cell.n.size() == 3 ? p : p / n[3];
     }
     static Vec3<Polynomial> evaluate(const Cell& cell, const Polynomial& s, const Polynomial& t) {
-        std::vector<Polynomial> bu, bv;
-        bernstein(int(cell.n[0].c.size()) - 1, s, bu);
-        bernstein(int(cell.n[0].c[0].size()) - 1, t, bv);
         if (cell.n.size() == 4) return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
-        return {cell.n[0](s, t, bu, bv), cell.n[1](s, t, bu, bv), cell.n[2](s, t, bu, bv)};
+        const auto x = coordinates(cell, s, t);
+        return {x[0], x[1], x[2]};
     }
 };
 

@@ -32,6 +32,17 @@ public:
         patch_.frames(n, u, v, out);
         for (std::size_t i = 0; i < n; ++i) out[i] = moved(map_, out[i]);
     }
+    void frame_arrays(Isa isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const override {
+        patch_.frames(u, v, out, isa);
+        const auto move = [&](const std::array<std::span<double>, 3>& x, auto map) {
+            for (std::size_t k = 0; k < u.size(); ++k) {
+                const Point p = map(Point{x[0][k], x[1][k], x[2][k]});
+                x[0][k] = p.x, x[1][k] = p.y, x[2][k] = p.z;
+            }
+        };
+        move(out.position, [&](const Point& p) { return map_.point(p); });
+        for (const auto* d : {&out.du, &out.dv}) move(*d, [&](const Point& p) { return map_.vector(p); });
+    }
     Enclosure enclose(const Box& box) const override {
         Enclosure e = patch_.enclose(box);
         e.centre = moved(map_, e.centre);

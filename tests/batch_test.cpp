@@ -1,0 +1,250 @@
+// batch_test.cpp -- Patch::frames in arrays: equal to the bit for every instruction set, odd size and way to cut; as close to the surface as
+// promised; and no instruction beyond the baseline's outside of the loops that ask the machine first.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "curves/line.h"
+#include "error.h"
+#include "patches/cone.h"
+#include "patches/coons.h"
+#include "patches/tensor_bezier.h"
+#include "run_program.h"
+#include "samples.h"
+
+namespace isoparm::tests {
+namespace {
+
+using Numbers = std::vector<double>;
+
+std::vector<Isa> isas_here() {
+    std::vector<Isa> here;
+    for (const Isa isa : all_isas)
+        if (runs(isa)) here.push_back(isa);
+    return here;
+}
+
+/// The nine arrays, each `shift` numbers into its own memory: not aligned.
+struct Result {
+    std::array<Numbers, 9> numbers;
+    std::size_t size, shift;
+    explicit Result(std::size_t n, std::size_t s = 1) : size(n), shift(s) { numbers.fill(Numbers(n + s, -7)); }
+    FrameArrays arrays() {
+        const auto part = [&](int k) { return std::span(numbers[k]).subspan(shift); };
+        const auto three = [&](int k) { return std::array{part(k), part(k + 1), part(k + 2)}; };
+        return {three(0), three(3), three(6)};
+    }
+    double at(int k, std::size_t i) const { return numbers[k][shift + i]; }
+};
+bool same_bits(const Result& a, const Result& b) {
+    for (int k = 0; k < 9; ++k)
+        for (std::size_t i = 0; i < a.size; ++i)
+            if (std::bit_cast<std::uint64_t>(a.at(k, i)) != std::bit_cast<std::uint64_t>(b.at(k, i)) &&
+                !(std::isnan(a.at(k, i)) && std::isnan(b.at(k, i))))
+                return false;
+    return true;
+}
+
+/// Anywhere, on breaks, on edges and at the corners.
+void parameters(Random& r, const Patch& patch, std::size_t n, Numbers& u, Numbers& v) {
+    const auto lines_u = patch.lines_u(), lines_v = patch.lines_v();
+    for (std::size_t i = 0; i < n; ++i) {
+        Vec2 p = random_parameter(r, patch);
+        if (i % 4 == 1) p = patch.edge_point(int(i / 4) % patch.edges(), i % 8 < 4 ? r.number() : double(i % 3 == 0));
+        if (i % 4 == 2 && patch.domain() == Domain::quad) p.x = lines_u[std::size_t(r.integer(0, int(lines_u.size()) - 1))];
+        if (i % 8 == 3 && patch.domain() == Domain::quad) p.y = lines_v[std::size_t(r.integer(0, int(lines_v.size()) - 1))];
+        u.push_back(p.x), v.push_back(p.y);
+    }
+}
+
+class BatchLaw : public ::testing::TestWithParam<PatchType> {
+protected:
+    PatchSample sample_ = [] {
+        Random random(1);
+        return GetParam().make(random);
+    }();
+    const Patch& patch_ = sample_.patch;
+};
+
+TEST_P(BatchLaw, EveryInstructionSetAndSizeGivesTheSameBits) {
+    Random r(2);
+    for (const std::size_t n : {0, 1, 7, 8, 9, 1000}) {
+        Numbers u(1), v(1);  // shifted as the results are
+        parameters(r, patch_, n, u, v);
+        const auto us = std::span<const double>(u).subspan(1), vs = std::span<const double>(v).subspan(1);
+        Result whole(n);
+        patch_.frames(us, vs, whole.arrays(), Isa::baseline);
+        for (const Isa isa : isas_here())
+            for (const std::size_t shift : {0, 1, 3}) {
+                Result other(n, shift);
+                patch_.frames(us, vs, other.arrays(), isa);
+                EXPECT_TRUE(same_bits(whole, other)) << n << " points, " << to_text(isa);
+                for (const auto& x : other.numbers)
+                    for (std::size_t i = 0; i < shift; ++i) EXPECT_EQ(x[i], -7) << "written before its beginning";
+            }
+        for (std::size_t i = 0; i < std::min<std::size_t>(n, 100); ++i) {  // one by one, each a row of one point
+            Result one(1);
+            patch_.frames(us.subspan(i, 1), vs.subspan(i, 1), one.arrays());
+            for (int k = 0; k < 9; ++k) EXPECT_TRUE(one.at(k, 0) == whole.at(k, i) || std::isnan(whole.at(k, i)));
+        }
+    }
+}
+
+TEST_P(BatchLaw, ARowIsItsPoints) {
+    Random r(3);
+    Numbers u, v;
+    parameters(r, patch_, 100, u, v);
+    const double least = *std::min_element(v.begin(), v.end());  // in the domain with every u, also of a triangle
+    for (const double at : {least, patch_.domain() == Domain::quad ? v[5] : least}) {
+        const Numbers every(u.size(), at);
+        for (const Isa isa : isas_here()) {
+            Result row(u.size()), points(u.size());
+            patch_.frames(u, std::span(&at, 1), row.arrays(), isa);
+            patch_.frames(u, every, points.arrays(), isa);
+            EXPECT_TRUE(same_bits(row, points)) << to_text(isa);
+        }
+    }
+}
+
+TEST_P(BatchLaw, AgreesWithTheFormula) {
+    Random r(4);
+    Numbers u, v;
+    parameters(r, patch_, 500, u, v);
+    Result x(u.size());
+    patch_.frames(u, v, x.arrays());
+    const Rect rect = patch_.rect();
+    const double size = size_of_sample(patch_), cells = double(patch_.breaks_u().size() + patch_.breaks_v().size() + 2);
+    const double width = std::min(rect.u1 - rect.u0, rect.v1 - rect.v0) / cells;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        const PointFrame f = patch_.frame(u[i], v[i]);
+        for (int k = 0; k < 9; ++k) {
+            const double wanted = f[k % 3].c[k / 3], found = x.at(k, i);
+            if (std::isnan(wanted)) {
+                EXPECT_FALSE(found > 1e6 * size) << "where the formula has no derivative";
+                continue;
+            }
+            EXPECT_LE(std::fabs(found - wanted), 1e-12 * (k < 3 ? size : size / width + std::fabs(wanted)))
+                << "number " << k << " at " << u[i] << ", " << v[i];
+        }
+    }
+}
+INSTANTIATE_TEST_SUITE_P(All, BatchLaw, ::testing::ValuesIn(patch_types()), name_of);
+
+Grid<Point> net_at(Random& r, double offset) {
+    Grid<Point> net(4, std::vector<Point>(4));
+    for (auto& row : net)
+        for (Point& p : row) p = r.vector() + Point{offset, offset, offset};
+    return net;
+}
+PolynomialCells::Form form_of(const Grid<Point>& net) {  // the power form by the binomial theorem, over [0,1]^2 and its middle
+    const auto u = Polynomial::variable_u({0, 1}), v = Polynomial::variable_v({0, 1});
+    const auto bernstein = [](const Polynomial& t, int i) {
+        Polynomial b(binomial(3, i));
+        for (int k = 0; k < 3; ++k) b = b * (k < i ? t : Polynomial(1) - t);
+        return b;
+    };
+    PolynomialCells::Form form(3, Polynomial(0));
+    for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) form[axis] = form[axis] + bernstein(u, i) * bernstein(v, j) * Polynomial(net[i][j][axis]);
+    return form;
+}
+
+TEST(Batch, ErrorsStayBelowTheProvedBound) {
+    Random r(5);
+    for (const double offset : {0.0, 1e3}) {
+        const Grid<Point> net = net_at(r, offset);
+        const PolynomialCells cells({0, 1}, {0, 1}, {form_of(net)});
+        ASSERT_TRUE(cells.exist());
+        EXPECT_LE(cells.error().position, PolynomialCells::accuracy * (1 + offset));
+        EXPECT_GT(cells.error().position, 0);
+        const Patch patch = make_bezier_patch(net);
+        Numbers u, v;
+        parameters(r, patch, 200, u, v);
+        Result x(u.size());
+        cells.frames(Isa::baseline, u, v, x.arrays());
+        const double bound[] = {cells.error().position, cells.error().du, cells.error().dv};
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const Enclosure e = patch.enclose({u[i], v[i]});
+            for (int k = 0; k < 9; ++k) {
+                const Interval exact = e.over[k % 3].c[k / 3];
+                EXPECT_GE(x.at(k, i), exact.lo - bound[k / 3]);
+                EXPECT_LE(x.at(k, i), exact.hi + bound[k / 3]);
+            }
+        }
+    }
+}
+
+TEST(Batch, WhatCannotBeProvedIsLeftToTheFormula) {
+    const auto u = Polynomial::variable_u({0, 1}), v = Polynomial::variable_v({0, 1});
+    Polynomial high(1);
+    for (int k = 0; k < PolynomialCells::max_degree + 1; ++k) high = high * u;
+    EXPECT_FALSE(PolynomialCells({0, 1}, {0, 1}, {{high, u, v}}).exist()) << "a degree without loops";
+    EXPECT_TRUE(PolynomialCells({0, 1}, {0, 1}, {{u * v, u, v}}).exist());
+    EXPECT_FALSE(PolynomialCells({0, 1}, {0, 1}, {{u * Polynomial(Interval(1, 1 + 1e-9)), u, v}}).exist()) << "a coefficient known to nine digits";
+    EXPECT_FALSE(PolynomialCells({0, 1}, {0, 1}, {{u * Polynomial(Interval::all()), u, v}}).exist()) << "an unknown coefficient";
+    EXPECT_TRUE(PolynomialCells({0, 1}, {0, 1}, {{u, v, u, u + Polynomial(1)}}).exist());
+    EXPECT_FALSE(PolynomialCells({0, 1}, {0, 1}, {{u, v, u, u}}).exist()) << "a denominator that vanishes";
+}
+
+TEST(Batch, PolesAndApexesHaveNoNaN) {
+    const Curve circle = make_line({1, 0, 0}, {0, 1, 0});
+    const Grid<Point> pole{{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+    const double h = std::sqrt(0.5);
+    for (const Patch& patch : {make_cone(circle, {0, 0, 1}), make_bezier_patch(pole), make_bezier_patch(pole, {{1, h, 1}, {h, 0.5, h}, {1, h, 1}})}) {
+        const Numbers u{0, 0, 0, 1, 1}, v{0, 0.5, 1, 0, 1};
+        Result x(u.size());
+        patch.frames(u, v, x.arrays());
+        for (int k = 0; k < 9; ++k)
+            for (std::size_t i = 0; i < u.size(); ++i) EXPECT_TRUE(std::isfinite(x.at(k, i)));
+    }
+}
+
+TEST(Batch, RefusesArraysOfOtherSizes) {
+    Random r(6);
+    const Patch patch = make_bezier_patch(net_at(r, 0));
+    const Numbers three(3, 0.5), two(2, 0.5);
+    Result x(3), small(2);
+    EXPECT_NO_THROW(patch.frames(three, three, x.arrays()));
+    EXPECT_THROW(patch.frames(three, two, x.arrays()), std::invalid_argument);
+    EXPECT_THROW(patch.frames(three, three, small.arrays()), std::invalid_argument);
+    FrameArrays mixed = x.arrays();
+    mixed.dv[2] = mixed.dv[2].first(2);
+    EXPECT_THROW(patch.frames(three, three, mixed), std::invalid_argument);
+}
+
+TEST(Batch, TheEnvironmentNamesAnInstructionSetOfThisMachine) {
+    EXPECT_EQ(isa_named("baseline"), Isa::baseline);
+    EXPECT_EQ(isa_named(nullptr), isas_here().back());
+    EXPECT_EQ(isa_named(""), isas_here().back());
+    for (const Isa isa : isas_here()) EXPECT_EQ(isa_named(to_text(isa)), isa);
+    try {
+        isa_named("sse9");
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::usage);
+        EXPECT_NE(std::string(e.what()).find("baseline"), std::string::npos) << e.what();
+    }
+}
+
+TEST(Batch, PicturesAreTheSameWithEveryInstructionSet) {
+    const test::TemporaryFolder t;
+    const auto picture = [&](const char* isa) {
+        ::setenv("ISOPARM_ISA", isa, 1);
+        const std::string file = t / (std::string("picture_") + isa + ".exr");
+        const test::Outcome o = test::run("render " + test::source_folder() + "/scenes/teapot.json -o " + file +
+                                          " --size 40x30 --samples 2 --tolerance 1e-2rel --reproducible --quiet");
+        ::unsetenv("ISOPARM_ISA");
+        EXPECT_EQ(o.code, *isa == '?' ? 64 : 0) << o.err;
+        return test::read_all(file);
+    };
+    const std::string baseline = picture("baseline");
+    EXPECT_FALSE(baseline.empty());
+    EXPECT_EQ(picture(to_text(isas_here().back())), baseline);
+    picture("?");
+}
+
+}  // namespace
+}  // namespace isoparm::tests
