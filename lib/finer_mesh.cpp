@@ -31,6 +31,7 @@ FinerMesh::FinerMesh(const Composite& surface, double error, std::size_t max_tri
         first_.push_back(mesh_.triangles.size());
         for (const auto& k : part.triangles) mesh_.triangles.push_back({part.vertex[k[0]], part.vertex[k[1]], part.vertex[k[2]]});
     }
+    tree_ = std::make_unique<const TriangleTree>(mesh_);
     middles_.resize(mesh_.triangles.size());
     for (std::size_t p = 0; p < parts_.size(); ++p) {
         const MeshPart& part = parts_[p];

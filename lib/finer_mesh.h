@@ -1,5 +1,7 @@
 // finer_mesh.h -- a mesh that stands for a surface while another one is compared with it; internal to verify.cpp.
 #pragma once
+#include <memory>
+
 #include "tessellate.h"
 #include "triangle_tree.h"
 
@@ -11,6 +13,7 @@ public:
     FinerMesh(const Composite& surface, double error, std::size_t max_triangles, const std::function<void(double)>& progress);
 
     const TriangleMesh& mesh() const { return mesh_; }
+    const TriangleTree& tree() const { return *tree_; }
     /// Proved: no point of the surface, or of this mesh, is farther than that from the other.
     double error() const { return error_; }
 
@@ -34,6 +37,7 @@ private:
     std::vector<MeshPart> parts_;
     std::vector<std::size_t> first_;  // triangle of each part
     TriangleMesh mesh_;
+    std::unique_ptr<const TriangleTree> tree_;
     std::vector<Point> middles_;
     double error_ = 0;
 };

@@ -14,22 +14,11 @@ constexpr double kCut = 8 * kUnit;     // a cut's end is off by this times the l
 constexpr double kNear = 64 * kUnit;   // and the distance from the nearest point of a triangle by this
 constexpr double kSafe = 1 + 1e-14;
 
-/// A convex piece of a triangle.
-struct Piece {
-    static constexpr int most = 9;
-    std::array<Point, most + 3> x;
-    int size = 0;
-    int cuts = 0;                              // how often what it comes from was cut
-    std::uint32_t host = TriangleTree::none;   // the triangle of the mesh along whose sides it was cut out
-    std::uint32_t hint = TriangleTree::none;
-    double upper = std::numeric_limits<double>::infinity();
-
-    Point centre() const {
-        Point c{0, 0, 0};
-        for (int k = 0; k < size; ++k) c += x[k];
-        return c / double(size);
-    }
-};
+Point centre_of(const Piece& p) {
+    Point c{0, 0, 0};
+    for (int k = 0; k < p.size; ++k) c += p.x[k];
+    return c / double(p.size);
+}
 
 /// The two vertices that are farthest apart.
 std::array<int, 2> diameter(const Piece& p) {
@@ -81,41 +70,43 @@ std::size_t chunks(std::size_t count) { return (count + kChunk - 1) / kChunk; }
 
 class Cover {
 public:
-    Cover(const TriangleTree& mesh, const ReachOptions& options)
-        : mesh_(mesh), options_(options), coordinate_(std::max(options.coordinate, mesh.size())), good_(options.known * (1 + options.gap)) {}
+    Cover(const TriangleTree& mesh, const ReachOptions& options, std::vector<Piece>* left)
+        : mesh_(mesh), options_(options), left_(left), coordinate_(std::max(options.coordinate, mesh.size())) {}
 
-    void triangle(const std::array<Point, 3>& corners, std::size_t number, Reach& reach) {
-        Piece whole;
-        whole.size = 3;
-        std::copy(corners.begin(), corners.end(), whole.x.begin());
-        whole.hint = hint_;
-        stack_.assign(1, whole);
-        std::size_t left = options_.pieces;
-        while (!stack_.empty()) {
-            if (left-- == 0) {
-                for (const Piece& p : stack_) reach.upper = std::max(reach.upper, p.upper);
+    void operator()(const Piece& piece, Reach& reach) {
+        stack_.assign(1, piece);
+        if (piece.hint == TriangleTree::none) stack_[0].hint = hint_;
+        for (std::size_t part = 0; !stack_.empty(); ++part) {
+            if (part == options_.parts) {
+                for (const Piece& p : stack_) take(p, reach);
                 reach.spent = true;
                 return;
             }
-            const Piece piece = stack_.back();
+            const Piece next = stack_.back();
             stack_.pop_back();
-            settle_or_split(piece, number, reach);
+            settle_or_split(next, reach);
         }
     }
 
 private:
-    void settle_or_split(Piece piece, std::size_t number, Reach& reach) {
-        const TriangleTree::Nearest near = mesh_.nearest(piece.centre(), piece.hint);
-        piece.hint = hint_ = near.triangle;
-        const auto& target = mesh_.corners(near.triangle);
-        // The distance from one triangle is convex: it is largest at a vertex.
+    /// Bounds the distance of a piece by that of its vertices from one triangle: distance from a convex set is convex. Returns the worst.
+    int bound(Piece& piece, std::uint32_t triangle) const {
+        const auto& target = mesh_.corners(triangle);
         double most = 0;
         int worst = 0;
         for (int k = 0; k < piece.size; ++k)
             if (const double d = distance(piece.x[k], nearest_of_triangle(piece.x[k], target)); d > most) most = d, worst = k;
-        const double slack = (kNear + piece.cuts * kCut) * coordinate_;
-        piece.upper = std::min(piece.upper, most * kSafe + slack);
-        if (piece.upper <= good_) return take(piece, reach);
+        piece.upper = std::min(piece.upper, most * kSafe + (kNear + piece.cuts * kCut) * coordinate_);
+        return worst;
+    }
+
+    void settle_or_split(Piece piece, Reach& reach) {
+        if (piece.hint != TriangleTree::none && (bound(piece, piece.hint), piece.upper <= options_.good)) return take(piece, reach);
+        const TriangleTree::Nearest near = mesh_.nearest(centre_of(piece), piece.hint);
+        piece.hint = hint_ = near.triangle;
+        const auto& target = mesh_.corners(near.triangle);
+        const int worst = bound(piece, near.triangle);
+        if (piece.upper <= options_.good) return take(piece, reach);
 
         const auto [i, j] = diameter(piece);
         const Point across = piece.x[j] - piece.x[i];
@@ -124,7 +115,8 @@ private:
         if (wide <= 4 * side) {
             // Is the distance that large? Then there is nothing to gain.
             const double there = mesh_.nearest(piece.x[worst], near.triangle).distance;
-            if (there > reach.seen) reach.seen = there, reach.at = piece.x[worst], reach.at_slack = piece.cuts * kCut * coordinate_, reach.triangle = number;
+            if (there > reach.seen) reach.seen = there, reach.at = piece.x[worst], reach.at_slack = piece.cuts * kCut * coordinate_, reach.triangle = piece.triangle;
+            if (left_ && there > options_.good) return left_->push_back(piece);
             if (piece.upper <= there * (1 + options_.gap) || wide <= 4 * fine) return take(piece, reach);
             if (piece.host != near.triangle && cut_along_sides(piece, near.triangle, fine)) return;
         }
@@ -170,7 +162,8 @@ private:
 
     const TriangleTree& mesh_;
     const ReachOptions& options_;
-    const double coordinate_, good_;
+    std::vector<Piece>* const left_;
+    const double coordinate_;
     std::uint32_t hint_ = TriangleTree::none;
     std::vector<Piece> stack_;
 };
@@ -178,24 +171,35 @@ private:
 }  // namespace
 
 Farthest farthest_point(std::size_t count, const std::function<Point(std::size_t)>& point, const TriangleTree& mesh) {
-    return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, chunks(count)), Farthest{}, [&](const auto& range, Farthest far) {
-        for (std::size_t chunk = range.begin(); chunk < range.end(); ++chunk) {
-            std::uint32_t hint = TriangleTree::none;
-            for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
-                const auto near = mesh.nearest(point(i), hint);
-                hint = near.triangle;
-                if (near.distance > far.distance) far = {i, near.distance};
+    // A few points tell what there is to beat; then most others are settled by the triangle that was nearest to one before them.
+    constexpr std::size_t kStride = 61;
+    const auto farthest = [&](std::size_t number, std::size_t stride, const Farthest& known) {
+        return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, chunks(number)), known, [&](const auto& range, Farthest best) {
+            for (std::size_t chunk = range.begin(); chunk < range.end(); ++chunk) {
+                std::uint32_t hint = TriangleTree::none;
+                Farthest far = known;
+                for (std::size_t i = chunk * kChunk; i < std::min(number, (chunk + 1) * kChunk); ++i) {
+                    const Point p = point(i * stride);
+                    if (hint != TriangleTree::none && distance(p, nearest_of_triangle(p, mesh.corners(hint))) <= far.distance) continue;
+                    const auto near = mesh.nearest(p, hint);
+                    hint = near.triangle;
+                    if (near.distance > far.distance) far = {i * stride, near.distance};
+                }
+                if (far.distance > best.distance) best = far;
             }
-        }
-        return far;
-    }, [](const Farthest& a, const Farthest& b) { return b.distance > a.distance ? b : a; });
+            return best;
+        }, [](const Farthest& a, const Farthest& b) { return b.distance > a.distance ? b : a; });
+    };
+    return farthest(count, 1, farthest((count + kStride - 1) / kStride, kStride, Farthest{}));
 }
 
-Reach reach_of(std::size_t count, const std::function<std::array<Point, 3>(std::size_t)>& triangle, const TriangleTree& mesh, const ReachOptions& options) {
+Reach reach_of(std::size_t count, const std::function<Piece(std::size_t)>& piece, const TriangleTree& mesh, const ReachOptions& options) {
+    const std::size_t end = chunks(count), step = end / 50 + 16;
+    std::vector<std::vector<Piece>> left(options.left ? end : 0);
     const auto of_chunks = [&](const auto& range, Reach reach) {
         for (std::size_t chunk = range.begin(); chunk < range.end(); ++chunk) {
-            Cover cover(mesh, options);
-            for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) cover.triangle(triangle(i), i, reach);
+            Cover cover(mesh, options, options.left ? &left[chunk] : nullptr);
+            for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) cover(piece(i), reach);
         }
         return reach;
     };
@@ -205,12 +209,12 @@ Reach reach_of(std::size_t count, const std::function<std::array<Point, 3>(std::
         return r;
     };
     Reach all;
-    const std::size_t end = chunks(count), step = end / 50 + 16;
     for (std::size_t first = 0; first < end; first += step) {
         const std::size_t last = std::min(end, first + step);
         all = both(all, tbb::parallel_reduce(tbb::blocked_range<std::size_t>(first, last), Reach{}, of_chunks, both));
         if (options.progress) options.progress(double(last) / double(end));
     }
+    for (const auto& pieces : left) options.left->insert(options.left->end(), pieces.begin(), pieces.end());
     return all;
 }
 

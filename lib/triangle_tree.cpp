@@ -51,15 +51,6 @@ Point nearest_of_triangle(const Point& p, const std::array<Point, 3>& t) {
     return a + s * ab + r * ac;
 }
 
-double TriangleTree::Node::square_distance(const Point& p) const {
-    double d = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double out = std::max(std::max(low[axis] - p[axis], p[axis] - high[axis]), 0.0);
-        d += out * out;
-    }
-    return d * (1 - 1e-14);  // so never more than the exact one
-}
-
 TriangleTree::TriangleTree(const TriangleMesh& mesh) : number_(mesh.triangles.size()), slot_(mesh.triangles.size()) {
     const std::size_t n = mesh.triangles.size(), leaves = (n + kLeaf - 1) / kLeaf;
     std::iota(number_.begin(), number_.end(), 0u);

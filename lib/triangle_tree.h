@@ -3,6 +3,7 @@
 // Distances carry their rounding: see docs/certificates.md, "Verify". Safe to call from several threads. The tree, and what it
 // answers, does not depend on how many built it.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -49,7 +50,12 @@ private:
         Point low, high;
         std::uint32_t first = 0;  // of a leaf: its first slot; else the right child, the left one follows the node
         std::uint32_t count = 0;  // triangles of a leaf; 0: no leaf
-        double square_distance(const Point& p) const;
+        /// Never more than the exact one.
+        double square_distance(const Point& p) const {
+            const auto out = [](double low, double high, double x) { return std::max(std::max(low - x, x - high), 0.0); };
+            const double x = out(low.x, high.x, p.x), y = out(low.y, high.y, p.y), z = out(low.z, high.z, p.z);
+            return (x * x + y * y + z * z) * (1 - 1e-14);
+        }
     };
     void build(const std::vector<Point>& centres, std::size_t node, std::size_t begin, std::size_t end);
 

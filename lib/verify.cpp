@@ -18,6 +18,7 @@ namespace {
 constexpr double kFirst = 1e-3;       // error of the first finer mesh, of the size of the surface
 constexpr double kExact = 1e-11;      // distances below this, of the size of all coordinates, are not told apart
 constexpr double kStep = 16;          // from one finer mesh to the next, while the distance is not known
+constexpr double kBetween = 0.15;     // error of the one before the last, of the distance
 constexpr double kLeastGap = 1e-3;    // when the limit lies in the interval
 
 /// The share of the gap that the error of the finer mesh may take, and that bounds of triangles may.
@@ -36,7 +37,7 @@ public:
     Verification run() {
         make_finer(kFirst * size_);
         for (bool last = false;;) {
-            const TriangleTree finer(finer_->mesh());
+            const TriangleTree& finer = finer_->tree();
             exact_ = kExact * std::max(tree_.size(), finer.size());
             if (!s_.narrowed) sample_surface();
             if (!m_.narrowed) sample_mesh(finer);
@@ -56,7 +57,9 @@ private:
     /// False where it cannot be made; then the one before stays.
     bool make_finer(double error) {
         try {
-            finer_ = std::make_unique<FinerMesh>(surface_, error, 2 * options_.max_triangles, [&](double f) { report(0, f); });
+            auto made = std::make_unique<FinerMesh>(surface_, error, 2 * options_.max_triangles, [&](double f) { report(0, f); });
+            coarser_ = std::move(finer_);
+            finer_ = std::move(made);
             return true;
         } catch (const Error& e) {
             if (e.kind() != ErrorKind::budget || !finer_) throw;
@@ -66,11 +69,13 @@ private:
     }
     /// 0: no finer one is of use, or within the budget.
     double next_error() const {
-        double wanted = 0;
-        if (!s_.narrowed) wanted = std::max(wanted, kErrorShare * gap_ * s_seen_);
-        if (!m_.narrowed && m_seen_ > 4 * finer_->error()) wanted = std::max(wanted, kErrorShare * gap_ * m_seen_);
-        const double now = finer_->error(), least = now * double(finer_->mesh().triangles.size()) / double(options_.max_triangles);
-        const double next = std::max(wanted > 0 ? std::min(wanted, now / 1.5) : now / kStep, least);
+        double distance = 0;  // known to be about that
+        if (!s_.narrowed) distance = s_seen_;
+        if (!m_.narrowed && m_seen_ > 4 * finer_->error()) distance = std::max(distance, m_seen_);
+        const double now = finer_->error(), least = now * double(finer_->mesh().triangles.size()) / (2 * double(options_.max_triangles));
+        double next = now / kStep;
+        if (distance > 0) next = std::min(now / 1.5, (now > 4 * kBetween * distance ? kBetween : kErrorShare * gap_) * distance);
+        next = std::max(next, least);
         return now > exact_ && next <= now / 1.2 ? next : 0;
     }
     std::string budget_text() const {
@@ -92,7 +97,8 @@ private:
         if (lower > s_.lower) s_.lower = lower, s_.at = p, s_.member = place.member, s_.uv = place.uv;
     }
     void cover_surface() {
-        const Reach reach = reach_from(finer_->mesh(), tree_, s_seen_, 1);
+        const TriangleMesh& from = finer_->mesh();
+        const Reach reach = reach_of(from.triangles.size(), [&](std::size_t t) { return Piece(from.corners(t), t); }, tree_, reach_options(s_seen_ * (1 + kBoundShare * gap_), 1));
         s_.upper = std::min(s_.upper, rounding::up(reach.upper + finer_->error()));
         spent_ = spent_ || reach.spent;
     }
@@ -110,10 +116,24 @@ private:
         m_seen_ = far.distance;
         raise_lower(finer, sample(far.index), corner ? 0 : 16 * 0x1p-53 * tree_.size(), corner ? far.index / 3 : far.index - corners);
     }
+    /// What is well below the largest distance is settled by the mesh before this one, which has fewer triangles.
     void cover_mesh(const TriangleTree& finer) {
-        const Reach reach = reach_from(mesh_, finer, m_seen_, 2);
+        const double good = m_seen_ * (1 + kBoundShare * gap_), coarse_good = good - (coarser_ ? coarser_->error() - finer_->error() : 0);
+        std::vector<Piece> left;
+        double upper = 0;
+        const bool two = coarser_ && coarse_good > 0.5 * good && coarser_->mesh().triangles.size() < finer_->mesh().triangles.size() / 2;
+        if (two) {
+            ReachOptions how = reach_options(coarse_good, 1);
+            how.left = &left;
+            const Reach reach = reach_of(mesh_.triangles.size(), [&](std::size_t t) { return Piece(mesh_.corners(t), t); }, coarser_->tree(), how);
+            upper = rounding::up(reach.upper + coarser_->error());
+            spent_ = spent_ || reach.spent;
+            for (Piece& p : left) p.hint = p.host = TriangleTree::none, p.upper = std::numeric_limits<double>::infinity();
+        }
+        const auto piece = [&](std::size_t i) { return two ? left[i] : Piece(mesh_.corners(i), i); };
+        const Reach reach = reach_of(two ? left.size() : mesh_.triangles.size(), piece, finer, reach_options(good, 2));
         if (reach.seen > m_seen_) m_seen_ = reach.seen, raise_lower(finer, reach.at, reach.at_slack, reach.triangle);
-        m_.upper = std::min(m_.upper, rounding::up(reach.upper + finer_->error()));
+        m_.upper = std::min(m_.upper, std::max(upper, rounding::up(reach.upper + finer_->error())));
         spent_ = spent_ || reach.spent;
         compare_normals(finer);
     }
@@ -126,13 +146,13 @@ private:
 
     bool fine_enough(double seen) const { return finer_->error() <= 1.3 * kErrorShare * gap_ * seen; }
 
-    Reach reach_from(const TriangleMesh& from, const TriangleTree& to, double seen, int part) const {
+    ReachOptions reach_options(double good, int part) const {
         ReachOptions how;
-        how.known = std::max(seen, exact_);
+        how.good = std::max(good, exact_);
         how.gap = kBoundShare * gap_;
-        for (const Point& p : from.points) how.coordinate = std::max({how.coordinate, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+        how.coordinate = std::max(tree_.size(), finer_->tree().size());
         how.progress = [this, part](double f) { report(part, f); };
-        return reach_of(from.triangles.size(), [&](std::size_t t) { return from.corners(t); }, to, how);
+        return how;
     }
 
     void decide() {
@@ -199,7 +219,7 @@ private:
     double gap_;
     const double size_;
     double exact_ = 0;
-    std::unique_ptr<FinerMesh> finer_;
+    std::unique_ptr<FinerMesh> finer_, coarser_;  // the last one, and the one before
     DirectedDistance s_, m_;            // surface to mesh, mesh to surface
     double s_seen_ = 0, m_seen_ = 0;    // the largest distances at sample points
     NormalDeviation normals_;
