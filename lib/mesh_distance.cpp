@@ -73,22 +73,37 @@ public:
     Cover(const TriangleTree& mesh, const ReachOptions& options, std::vector<Piece>* left)
         : mesh_(mesh), options_(options), left_(left), coordinate_(std::max(options.coordinate, mesh.size())) {}
 
+    /// The part with the largest bound is always next.
     void operator()(const Piece& piece, Reach& reach) {
-        stack_.assign(1, piece);
-        if (piece.hint == TriangleTree::none) stack_[0].hint = hint_;
-        for (std::size_t part = 0; !stack_.empty(); ++part) {
-            if (part == options_.parts) {
-                for (const Piece& p : stack_) take(p, reach);
-                reach.spent = true;
+        pool_.clear(), queue_.clear(), free_.clear();
+        known_ = 0;
+        add(piece);
+        if (piece.hint == TriangleTree::none) pool_[0].hint = hint_;
+        for (std::size_t part = 0; !queue_.empty(); ++part) {
+            const auto [upper, slot] = queue_.front();
+            if (upper <= good() || part == options_.parts) {  // so are all others
+                reach.upper = std::max(reach.upper, upper);
+                reach.spent = reach.spent || upper > good();
                 return;
             }
-            const Piece next = stack_.back();
-            stack_.pop_back();
+            std::pop_heap(queue_.begin(), queue_.end());
+            queue_.pop_back();
+            const Piece next = pool_[slot];
+            free_.push_back(slot);
             settle_or_split(next, reach);
         }
     }
 
 private:
+    double good() const { return left_ ? options_.good : std::max(options_.good, known_ * (1 + options_.gap)); }
+    void add(const Piece& piece) {
+        std::size_t slot = pool_.size();
+        if (free_.empty()) pool_.push_back(piece);
+        else slot = free_.back(), free_.pop_back(), pool_[slot] = piece;
+        queue_.emplace_back(piece.upper, slot);
+        std::push_heap(queue_.begin(), queue_.end());
+    }
+
     /// Bounds the distance of a piece by that of its vertices from one triangle: distance from a convex set is convex. Returns the worst.
     int bound(Piece& piece, std::uint32_t triangle) const {
         const auto& target = mesh_.corners(triangle);
@@ -101,12 +116,12 @@ private:
     }
 
     void settle_or_split(Piece piece, Reach& reach) {
-        if (piece.hint != TriangleTree::none && (bound(piece, piece.hint), piece.upper <= options_.good)) return take(piece, reach);
+        if (piece.hint != TriangleTree::none && (bound(piece, piece.hint), piece.upper <= good())) return take(piece, reach);
         const TriangleTree::Nearest near = mesh_.nearest(centre_of(piece), piece.hint);
         piece.hint = hint_ = near.triangle;
         const auto& target = mesh_.corners(near.triangle);
         const int worst = bound(piece, near.triangle);
-        if (piece.upper <= options_.good) return take(piece, reach);
+        if (piece.upper <= good()) return take(piece, reach);
 
         const auto [i, j] = diameter(piece);
         const Point across = piece.x[j] - piece.x[i];
@@ -115,6 +130,7 @@ private:
         if (wide <= 4 * side) {
             // Is the distance that large? Then there is nothing to gain.
             const double there = mesh_.nearest(piece.x[worst], near.triangle).distance;
+            known_ = std::max(known_, there);
             if (there > reach.seen) reach.seen = there, reach.at = piece.x[worst], reach.at_slack = piece.cuts * kCut * coordinate_, reach.triangle = piece.triangle;
             if (left_ && there > options_.good) return left_->push_back(piece);
             if (piece.upper <= there * (1 + options_.gap) || wide <= 4 * fine) return take(piece, reach);
@@ -139,22 +155,22 @@ private:
             rest = inside;
         }
         if ((rest.size > 0) + count < 2) return false;
-        for (int k = 0; k < count; ++k) beyond[k].host = TriangleTree::none, stack_.push_back(beyond[k]);
-        if (rest.size > 0) rest.host = triangle, stack_.push_back(rest);
+        for (int k = 0; k < count; ++k) beyond[k].host = TriangleTree::none, add(beyond[k]);
+        if (rest.size > 0) rest.host = triangle, add(rest);
         return true;
     }
 
     void bisect(const Piece& piece, const Point& across, const Point& middle, double fine, Reach& reach) {
         Piece above, below;
         if (piece.size < Piece::most && cut(piece, across, middle, fine, above, below) && above.size > 0 && below.size > 0) {
-            stack_.push_back(above), stack_.push_back(below);
+            add(above), add(below);
         } else if (piece.size > 3) {  // along a diagonal, which moves nothing
             above = below = piece;
             const int half = piece.size / 2;
             above.size = half + 1;
             below.size = 0;
             for (int k = half; k <= piece.size; ++k) below.x[below.size++] = piece.x[k % piece.size];
-            stack_.push_back(above), stack_.push_back(below);
+            add(above), add(below);
         } else {
             take(piece, reach);
         }
@@ -165,7 +181,10 @@ private:
     std::vector<Piece>* const left_;
     const double coordinate_;
     std::uint32_t hint_ = TriangleTree::none;
-    std::vector<Piece> stack_;
+    double known_ = 0;                                    // the largest distance that was seen at the piece
+    std::vector<Piece> pool_;                             // its parts
+    std::vector<std::size_t> free_;                       // places of the pool
+    std::vector<std::pair<double, std::size_t>> queue_;   // those to be looked at, the largest bound first
 };
 
 }  // namespace

@@ -30,7 +30,8 @@ Point nearest_of_sides(const Point& p, const std::array<Point, 3>& t) {
 Point nearest_of_triangle(const Point& p, const std::array<Point, 3>& t) {
     // Ericson, Real-Time Collision Detection (2005), 5.1.5: which corner, side or inside is nearest, by signs.
     const auto& [a, b, c] = t;
-    const Point ab = b - a, ac = c - a, ap = p - a;
+    const Point ab = b - a, ac = c - a, ap = p - a, n = cross(ab, ac);
+    if (!(dot(n, n) > 1e-12 * dot(ab, ab) * dot(ac, ac))) return nearest_of_sides(p, t);
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
     if (d1 <= 0 && d2 <= 0) return a;
     const Point bp = p - b;
@@ -46,7 +47,7 @@ Point nearest_of_triangle(const Point& p, const std::array<Point, 3>& t) {
     const double va = d3 * d6 - d5 * d4;
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return nearest_of_segment(p, b, c);
     const double sum = va + vb + vc;
-    if (!(sum > 1e-12 * dot(ab, ab) * dot(ac, ac))) return nearest_of_sides(p, t);
+    if (!(sum > 0)) return nearest_of_sides(p, t);
     const double s = std::clamp(vb / sum, 0.0, 1.0), r = std::clamp(vc / sum, 0.0, 1 - s);
     return a + s * ab + r * ac;
 }
@@ -119,11 +120,13 @@ double TriangleTree::distance_down(const Point& p) const {
     visit(p, [&] { return least * least; }, [&](std::uint32_t slot) {
         // g.(p - x) >= min over the corners c of g.(p - c) for every x of the triangle, so |p - x| >= that / |g|. With g = p - (the
         // nearest point) little is lost. Rounding: three differences and products, each off by a few u of |g| times a coordinate.
-        const Point g = p - nearest_of_triangle(p, corners_[slot]);
-        const double size = length(g);
-        double behind = std::numeric_limits<double>::infinity();
-        for (const Point& c : corners_[slot]) behind = std::min(behind, dot(g, p - c));
-        least = std::min(least, size > 1e-140 ? std::max(0.0, behind / size * (1 - 1e-14) - 64 * 0x1p-53 * coordinate) : 0);
+        const auto behind = [&](const Point& g) {
+            const double size = length(g);
+            double most = std::numeric_limits<double>::infinity();
+            for (const Point& c : corners_[slot]) most = std::min(most, dot(g, p - c));
+            return size > 1e-140 ? std::max(0.0, most / size * (1 - 1e-14) - 64 * 0x1p-53 * coordinate) : 0;
+        };
+        least = std::min(least, behind(p - nearest_of_triangle(p, corners_[slot])));
     });
     return least * (1 - 1e-14);  // boxes that were passed over are no nearer
 }

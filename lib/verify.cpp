@@ -35,7 +35,7 @@ public:
     }
 
     Verification run() {
-        make_finer(kFirst * size_);
+        make_first();
         for (bool last = false;;) {
             const TriangleTree& finer = finer_->tree();
             exact_ = kExact * std::max(tree_.size(), finer.size());
@@ -54,6 +54,14 @@ public:
 
 private:
     // ---- the finer mesh
+    void make_first() {
+        for (double error = kFirst * size_;; error *= 4) try {
+                make_finer(error);
+                return;
+            } catch (const Error& e) {
+                if (e.kind() != ErrorKind::budget || error > size_) throw;
+            }
+    }
     /// False where it cannot be made; then the one before stays.
     bool make_finer(double error) {
         try {
@@ -99,6 +107,14 @@ private:
     void cover_surface() {
         const TriangleMesh& from = finer_->mesh();
         const Reach reach = reach_of(from.triangles.size(), [&](std::size_t t) { return Piece(from.corners(t), t); }, tree_, reach_options(s_seen_ * (1 + kBoundShare * gap_), 1));
+        if (reach.seen > s_seen_) {  // on the finer mesh: the surface has a point within its error of there
+            s_seen_ = reach.seen;
+            const double lower = rounding::down(rounding::down(tree_.distance_down(reach.at) - finer_->error()) - reach.at_slack);
+            if (lower > s_.lower) {
+                const FinerMesh::Place place = finer_->place_in(reach.triangle, reach.at);
+                s_.lower = lower, s_.member = place.member, s_.uv = place.uv, s_.at = surface_[place.member].patch.point(place.uv.x, place.uv.y);
+            }
+        }
         s_.upper = std::min(s_.upper, rounding::up(reach.upper + finer_->error()));
         spent_ = spent_ || reach.spent;
     }
