@@ -31,7 +31,8 @@ Point nearest_of_triangle(const Point& p, const std::array<Point, 3>& t) {
     // Ericson, Real-Time Collision Detection (2005), 5.1.5: which corner, side or inside is nearest, by signs.
     const auto& [a, b, c] = t;
     const Point ab = b - a, ac = c - a, ap = p - a, n = cross(ab, ac);
-    if (!(dot(n, n) > 1e-12 * dot(ab, ab) * dot(ac, ac))) return nearest_of_sides(p, t);
+    const double nn = dot(n, n);
+    if (!(nn > 1e-16 * dot(ab, ab) * dot(ac, ac))) return nearest_of_sides(p, t);  // too thin for the signs below
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
     if (d1 <= 0 && d2 <= 0) return a;
     const Point bp = p - b;
@@ -46,9 +47,8 @@ Point nearest_of_triangle(const Point& p, const std::array<Point, 3>& t) {
     if (vb <= 0 && d2 >= 0 && d6 <= 0) return nearest_of_segment(p, a, c);
     const double va = d3 * d6 - d5 * d4;
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return nearest_of_segment(p, b, c);
-    const double sum = va + vb + vc;
-    if (!(sum > 0)) return nearest_of_sides(p, t);
-    const double s = std::clamp(vb / sum, 0.0, 1.0), r = std::clamp(vc / sum, 0.0, 1 - s);
+    // By n, not by va, vb and vc: in thin triangles these are differences of numbers that are almost equal.
+    const double s = std::clamp(dot(cross(ap, ac), n) / nn, 0.0, 1.0), r = std::clamp(dot(cross(ab, ap), n) / nn, 0.0, 1 - s);
     return a + s * ab + r * ac;
 }
 
