@@ -59,11 +59,11 @@ FinerMesh::Place FinerMesh::place(std::size_t i) const {
     if (i >= mesh_.points.size()) {
         std::size_t local = 0;
         const MeshPart& part = part_of(i - mesh_.points.size(), local);
-        return {part.member, middle(part, local)};
+        return {part.member, middle(part, local), part.flipped};
     }
     for (const MeshPart& part : parts_)
         for (std::size_t corner = 0; corner < part.vertex.size(); ++corner)
-            if (part.vertex[corner] == i) return {part.member, part.uv[corner]};
+            if (part.vertex[corner] == i) return {part.member, part.uv[corner], part.flipped};
     throw std::logic_error("a vertex of the finer mesh belongs to no patch");
 }
 
@@ -80,7 +80,7 @@ FinerMesh::Place FinerMesh::place_in(std::size_t triangle, const Point& p) const
         r = std::clamp((e * dot(ac, ap) - f * dot(ab, ap)) / det, 0.0, 1 - s);
     }
     const Vec2 &x = part.uv[t[0]], &y = part.uv[t[1]], &z = part.uv[t[2]];
-    return {part.member, {x.x + s * (y.x - x.x) + r * (z.x - x.x), x.y + s * (y.y - x.y) + r * (z.y - x.y)}};
+    return {part.member, {x.x + s * (y.x - x.x) + r * (z.x - x.x), x.y + s * (y.y - x.y) + r * (z.y - x.y)}, part.flipped};
 }
 
 std::vector<std::array<Point, 2>> FinerMesh::open_edges() const {

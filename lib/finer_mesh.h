@@ -21,6 +21,7 @@ public:
     struct Place {
         std::size_t member = 0;
         Vec2 uv;
+        bool flipped = false;  // the mesh winds against S_u x S_v there
     };
     std::size_t places() const { return mesh_.points.size() + middles_.size(); }
     /// Near the surface's point there.

@@ -199,11 +199,11 @@ private:
                 const auto [a, b, c] = mesh_.corners(t);
                 const Point n = cross(b - a, c - a), middle = (a + b + c) / 3.0;
                 const auto near = finer.nearest(middle);
-                const auto [x, y, z] = finer.corners(near.triangle);
-                const auto normal = normal_at(finer_->place_in(near.triangle, near.point));
+                const FinerMesh::Place place = finer_->place_in(near.triangle, near.point);
+                const auto normal = normal_at(place);
                 if (!(length(n) > 0) || !normal) continue;
                 angle[t] = std::atan2(length(cross(n, *normal)), std::fabs(dot(n, *normal))) * 180 / std::numbers::pi;
-                same[t] = dot(n, cross(y - x, z - x)) > 0;
+                same[t] = (dot(n, *normal) > 0) != place.flipped;
             }
         });
         NormalDeviation d;

@@ -15,7 +15,7 @@ namespace isoparm {
 struct VerifyOptions {
     double gap = 0.05;                      // upper - lower <= gap * upper is what is tried for, each way
     std::optional<double> limit;            // and that the limit does not lie between lower and upper
-    std::size_t max_triangles = 4'000'000;  // of the finer mesh: the budget
+    std::size_t max_triangles = 2'000'000;  // of the finer mesh: the budget
     std::function<void(double)> progress;   // called from the calling thread with a fraction in [0,1]; may be empty
 };
 

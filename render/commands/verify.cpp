@@ -38,8 +38,8 @@ limits            exit code 2 when one is exceeded, or cannot be decided within 
                   of opposite orientation
 
 --gap G           how narrow the intervals should be: upper - lower <= G upper (0.05; from 0.001 to 1)
---max-triangles N the budget: the surfaces are compared by a mesh of at most about N triangles (4000000); intervals are
-                  wider, and still proved, where that is not enough
+--max-triangles N the budget: the surfaces are compared by a mesh of about N triangles, at most 2 N (2000000);
+                  intervals are wider, and still proved, where that is not enough
 --weld            vertices with exactly equal coordinates become one in .ply and .obj too
 --junctions D     how near a vertex lies to an edge in a T-junction, in scene units (1e-6 of the mesh's size)
 --json            all numbers as JSON
