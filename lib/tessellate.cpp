@@ -181,10 +181,10 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     for (std::size_t m = 0; m < surface.size(); ++m) {
         const auto& part = result.mesh.parts[m];
         result.certified_error = std::max(result.certified_error, part.certified_error);
-        result.surfaces.push_back({part.name, part.triangles.size(), part.certified_error, optimal_triangles(surface[m].patch, options.tolerance)});
+        result.surfaces.push_back({part.name, part.triangles.size(), part.certified_error, options.study ? optimal_triangles(surface[m].patch, options.tolerance) : 0});
     }
     if (options.measure == Measure::geometric) report_normals(refinement, result);
-    result.sampled_error = refinement.sampled_error();
+    if (options.study) result.sampled_error = refinement.sampled_error();
     result.seconds_sample = seconds_since(start);
     return result;
 }

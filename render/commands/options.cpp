@@ -105,8 +105,7 @@ const std::string& Options::scene_path() const {
     if (words_.size() != 1) fail("found " + std::to_string(words_.size()) + " file names, expected one scene");
     return words_.front();
 }
-Scene Options::scene(const std::map<std::string, double>& more) const {
-    const std::string& path = scene_path();
+Scene Options::scene_at(const std::string& path, const std::map<std::string, double>& more) const {
     std::map<std::string, double> parameters;
     for (const std::string& set : values("--set")) {
         const std::size_t equals = set.find('=');

@@ -38,7 +38,9 @@ public:
     const std::vector<std::string>& words() const { return words_; }
     /// The scene named by the one word of the command line, with its --set parameters; those in `more` count instead. Its notes go
     /// to stderr.
-    Scene scene(const std::map<std::string, double>& more = {}) const;
+    Scene scene(const std::map<std::string, double>& more = {}) const { return scene_at(scene_path(), more); }
+    /// The same for another path.
+    Scene scene_at(const std::string& path, const std::map<std::string, double>& more = {}) const;
     /// Its path; not one word is an error.
     const std::string& scene_path() const;
     bool quiet() const { return has("--quiet"); }

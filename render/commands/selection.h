@@ -1,0 +1,22 @@
+// commands/selection.h -- which patches of a scene a command is about, and how fine.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "commands/options.h"
+
+namespace isoparm {
+
+/// Patches, and the surface of the scene that each of them belongs to.
+struct Selection {
+    Composite patches;
+    std::vector<std::string> surface;  // one a patch
+};
+
+/// Those of --surface; otherwise of all surfaces that the scene draws. Throws Error(input) when there is none.
+Selection select_patches(const Scene& scene, const Options& options);
+
+/// In scene units; `diagonal` is what relative ones are relative to. Throws Error(usage) for pixels.
+double absolute_tolerance(const Tolerance& t, double diagonal, const Options& options);
+
+}  // namespace isoparm
