@@ -19,10 +19,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Edges nearer than this are one. The certificate holds whatever it is: vertices are charged their distance from every
-/// patch that uses them. A sixteenth of the tolerance keeps that charge affordable.
-double join_tolerance(double tolerance, double diagonal) { return std::min(1e-6 * diagonal, tolerance / 16); }
-
 [[noreturn]] void give_up(const Refinement& refinement, const TessellationOptions& options, double needed) {
     std::ostringstream text;
     text.precision(6);
@@ -88,7 +84,10 @@ Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinemen
         part.flipped = topology.flipped[m];
         part.certified_error = refinement.worst_bound_of(m);
         for (const auto& t : p.triangles) {
-            if (p.left_out(t)) continue;  // a collapsed edge: its two long sides are one mesh edge
+            if (p.left_out(t)) {  // a collapsed edge: its two long sides are one mesh edge
+                part.left_out.push_back(t.corner);
+                continue;
+            }
             if (part.flipped) part.triangles.push_back({t.corner[0], t.corner[2], t.corner[1]});
             else part.triangles.push_back(t.corner);
             for (const auto v : p.vertices(t)) number[v] = 0;
@@ -105,8 +104,12 @@ Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinemen
     return mesh;
 }
 
-/// (0.3849 I+ + 0.2236 I-) / tolerance, I the integrals of sqrt|K| dA = sqrt|LN - M^2| du dv over K > 0 and K < 0, by the
-/// midpoint rule (Fejes Toth; Gruber; Atariah, Rote and Wintraecken 2018).
+}  // namespace
+
+double join_tolerance(double tolerance, double diagonal) { return std::min(1e-6 * diagonal, tolerance / 16); }
+
+// (0.3849 I+ + 0.2236 I-) / tolerance, I the integrals of sqrt|K| dA = sqrt|LN - M^2| du dv over K > 0 and K < 0, by the
+// midpoint rule (Fejes Toth; Gruber; Atariah, Rote and Wintraecken 2018).
 double optimal_triangles(const Patch& patch, double tolerance) {
     constexpr int n = 32;
     const std::vector<double> us = patch.lines_u(), vs = patch.lines_v();
@@ -133,8 +136,6 @@ double optimal_triangles(const Patch& patch, double tolerance) {
                 }
     return (2 / (3 * std::sqrt(3.0)) * convex + 1 / (2 * std::sqrt(5.0)) * saddle) / tolerance;
 }
-
-}  // namespace
 
 Tessellation tessellate(const Composite& surface, const TessellationOptions& options) {
     if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) throw_input("found tolerance " + to_text(options.tolerance) + ", expected a positive number");
