@@ -311,7 +311,7 @@ std::vector<RimPiece> rim_pieces(const Composite& surface, const Topology& topol
                 const RimUse& owner = topology.rims[r].uses[0];
                 return (projected(surface, owner, on_edge(surface, use, t)) - owner.t0) / (owner.t1 - owner.t0);
             };
-            const auto [low, high] = std::minmax(fraction(a), fraction(b));
+            const auto [low, high] = std::minmax({fraction(a), fraction(b)});
             if (high > kSame && low < 1 - kSame) pieces.push_back({low, high, i});
         }
     }

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <set>
 
 #include "commands/output.h"
+#include "commands/selection.h"
 #include "error.h"
 #include "io/atomic_file.h"
 #include "io/mesh_files.h"
@@ -43,39 +43,6 @@ that patches share are found and share their vertices.
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
 --quiet           no messages; --threads N  at most N threads: the mesh is the same for every N
 )";
-
-/// The patches to mesh, and the surface of the scene that each of them belongs to.
-struct Selection {
-    Composite patches;
-    std::vector<std::string> surface;  // one a patch
-};
-
-void add_surface(Selection& all, const std::string& surface, const Composite& patches, bool prefix) {
-    for (const Member& m : patches) {
-        all.patches.push_back({prefix && patches.size() > 1 ? surface + "/" + m.name : m.name, m.patch});
-        all.surface.push_back(surface);
-    }
-}
-
-Selection select(const Scene& scene, const Options& options) {
-    Selection all;
-    if (const auto name = options.value("--surface")) {
-        add_surface(all, *name, find_patches(scene, *name), false);
-        return all;
-    }
-    std::set<std::string> drawn;
-    for (const SceneObject& o : scene.objects)
-        if (o.kind == SceneObject::Kind::surface) drawn.insert(o.name);
-    if (drawn.empty()) throw_input(scene.place + ": found no surface that is drawn, expected one; name one with --surface");
-    for (const Surface& s : scene.surfaces)
-        if (drawn.count(s.name)) add_surface(all, s.name, s.patches, drawn.size() > 1);
-    return all;
-}
-
-double absolute_tolerance(const Tolerance& t, double diagonal, const Options& options) {
-    if (t.unit == Tolerance::Unit::pixels) options.fail("a tolerance in pixels needs a picture: give --tolerance in scene units or with rel");
-    return t.unit == Tolerance::Unit::relative ? t.value * diagonal : t.value;
-}
 
 std::string extension_of(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
@@ -177,7 +144,7 @@ int run(const std::vector<std::string>& arguments) {
     const auto given = options.tolerance();
 
     const Scene scene = options.scene();
-    const Selection selection = select(scene, options);
+    const Selection selection = select_patches(scene, options);
     const Bounds box = bounding_box(selection.patches);
     const double tolerance = absolute_tolerance(given ? *given : scene.tolerance, finite_diagonal(scene, box), options);
     if (!(tolerance > 0)) throw_input(scene.place + ": found surfaces of size 0, expected some that a relative tolerance can be taken of");

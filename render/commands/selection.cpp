@@ -1,0 +1,39 @@
+#include "commands/selection.h"
+
+#include <set>
+
+#include "error.h"
+
+namespace isoparm {
+namespace {
+
+void add_surface(Selection& all, const std::string& surface, const Composite& patches, bool prefix) {
+    for (const Member& m : patches) {
+        all.patches.push_back({prefix && patches.size() > 1 ? surface + "/" + m.name : m.name, m.patch});
+        all.surface.push_back(surface);
+    }
+}
+
+}  // namespace
+
+Selection select_patches(const Scene& scene, const Options& options) {
+    Selection all;
+    if (const auto name = options.value("--surface")) {
+        add_surface(all, *name, find_patches(scene, *name), false);
+        return all;
+    }
+    std::set<std::string> drawn;
+    for (const SceneObject& o : scene.objects)
+        if (o.kind == SceneObject::Kind::surface) drawn.insert(o.name);
+    if (drawn.empty()) throw_input(scene.place + ": found no surface that is drawn, expected one; name one with --surface");
+    for (const Surface& s : scene.surfaces)
+        if (drawn.count(s.name)) add_surface(all, s.name, s.patches, drawn.size() > 1);
+    return all;
+}
+
+double absolute_tolerance(const Tolerance& t, double diagonal, const Options& options) {
+    if (t.unit == Tolerance::Unit::pixels) options.fail("a tolerance in pixels needs a picture: give --tolerance in scene units or with rel");
+    return t.unit == Tolerance::Unit::relative ? t.value * diagonal : t.value;
+}
+
+}  // namespace isoparm

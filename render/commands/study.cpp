@@ -1,0 +1,318 @@
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <ostream>
+
+#include "commands/output.h"
+#include "commands/selection.h"
+#include "error.h"
+#include "heat_map.h"
+#include "io/atomic_file.h"
+#include "json.h"
+#include "json_text.h"
+#include "progress.h"
+#include "provenance.h"
+#include "sha256.h"
+#include "study_page.h"
+#include "study_plots.h"
+#include "study_store.h"
+#include "suggest.h"
+#include "text_cairo.h"
+
+namespace isoparm {
+namespace {
+
+constexpr const char* kHelp = R"(usage: isoparm study SCENE -o DIR [--surface S] [--tolerances LIST] [--methods LIST] [--set p=v] ...
+
+Tessellates surfaces by several methods at several tolerances, each mesh with the same certificate of its error, and
+compares triangles, proved and sampled error, time and shape. Writes to DIR: index.html, one page that needs nothing
+else; study.csv and study.json; diagrams as .svg and .pdf; pictures of the error on the surface in heat/.
+
+A study that was killed goes on where it was: every finished run lies in DIR/runs/, and counts as long as scene, options
+and program are the same. Files there that do not are made again, with a note. No file is deleted.
+
+-o DIR            made when it does not exist
+--surface S       one surface, or one patch of it, as in teapot/teapot#7; otherwise all surfaces that the scene draws
+--tolerances LIST as 1e-2,1e-3 in scene units or 1e-2rel,1e-3rel of the bounding-box diagonal; otherwise 10^-1.5 to 10^-5
+                  of the diagonal in half decades. The pictures are of the middle one
+--methods LIST    as uniform,fast; otherwise all:
+                  uniform     every patch on one n x n grid, with the smallest n that is proved
+                  quadtree    a restricted quadtree on each patch, refined where the proof fails
+                  fast        isoparm tessellate
+                  parametric  isoparm tessellate --measure parametric
+--max-triangles N 4000000: a run that would need more is recorded as not reached, and the study goes on
+--reproducible    no date in study.json and on the page (times are measured all the same)
+--set p=NUMBER    another value of a parameter of the scene; may be repeated
+--quiet           no messages; --threads N  at most N threads: the meshes are the same for every N
+)";
+
+constexpr int kHeatWidth = 1000, kHeatHeight = 750;
+
+struct Study {
+    std::string folder;
+    Scene scene;
+    Composite patches;
+    double diagonal = 0;
+    std::vector<std::string> methods;
+    std::vector<double> tolerances;  // falling
+    std::size_t max_triangles = 4'000'000;
+    int threads = 1;
+    bool quiet = false, reproducible = false;
+    std::string scene_hash, geometry_hash, options;
+
+    double heat_tolerance() const { return tolerances[(tolerances.size() - 1) / 2]; }
+};
+
+std::vector<std::string> parts_of(const std::string& list) {
+    std::vector<std::string> parts;
+    for (std::size_t from = 0; from <= list.size();) {
+        const std::size_t to = std::min(list.find(',', from), list.size());
+        parts.push_back(list.substr(from, to - from));
+        from = to + 1;
+    }
+    return parts;
+}
+
+std::vector<std::string> chosen_methods(const Options& options) {
+    std::vector<std::string> names, chosen;
+    for (const StudyMethod& m : study_methods()) names.push_back(m.name);
+    const auto list = options.value("--methods");
+    if (!list) return names;
+    for (const std::string& name : parts_of(*list)) {
+        if (!find_study_method(name)) options.fail("--methods: found " + quoted(name) + ", expected one of: " + listed(names) + did_you_mean(name, names));
+        if (std::find(chosen.begin(), chosen.end(), name) == chosen.end()) chosen.push_back(name);
+    }
+    return chosen;
+}
+
+std::vector<double> chosen_tolerances(const Options& options, double diagonal) {
+    std::vector<double> chosen;
+    if (const auto list = options.value("--tolerances")) {
+        for (const std::string& text : parts_of(*list)) {
+            const Tolerance t = [&] {
+                try {
+                    return parse_tolerance(text);
+                } catch (const Error&) {
+                    options.fail("--tolerances: found " + quoted(text) + " in the list, expected positive numbers, as 1e-2,1e-3 (scene units) or 1e-2rel,1e-3rel (of the bounding-box diagonal)");
+                }
+            }();
+            chosen.push_back(absolute_tolerance(t, diagonal, options));
+        }
+    } else {
+        chosen = default_tolerances(diagonal);
+    }
+    std::sort(chosen.rbegin(), chosen.rend());
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    return chosen;
+}
+
+/// A digest of the surfaces themselves, whatever files and parameters they come from.
+std::string geometry_of(const Composite& patches) {
+    constexpr int n = 9;
+    std::string all;
+    const auto add = [&](double x) { all += to_text(x) + " "; };
+    for (const Member& m : patches) {
+        all += m.name + "\n";
+        const auto us = m.patch.lines_u(), vs = m.patch.lines_v();
+        for (std::size_t i = 0; i + 1 < us.size(); ++i)
+            for (std::size_t j = 0; j + 1 < vs.size(); ++j)
+                for (int k = 0; k < n * n; ++k) {
+                    const double u = us[i] + (us[i + 1] - us[i]) * (k / n) / (n - 1), v = vs[j] + (vs[j + 1] - vs[j]) * (k % n) / (n - 1);
+                    const Point p = m.patch.domain() == Domain::triangle ? m.patch.point(u, v * (1 - u)) : m.patch.point(u, v);
+                    add(u), add(v), add(p.x), add(p.y), add(p.z);
+                }
+    }
+    return sha256(all);
+}
+
+/// Names that the study writes at the end must be free, or another study's.
+void check_folder(const Study& study, const StudyStore& store, const Options& options) {
+    std::vector<NamedFile> outputs;
+    for (const char* name : {"study.json", "study.csv", "index.html"}) outputs.push_back({"-o", store.path(name)});
+    check_outputs(options, outputs, {{"SCENE", options.scene_path()}});
+    const std::string json = store.path("study.json");
+    bool ours = false;
+    try {
+        ours = std::filesystem::exists(json) && Json::parse(read_text_file(json), json).find("isoparm_study") != nullptr;
+    } catch (const Error&) {
+    }
+    for (const NamedFile& o : outputs)
+        if (!ours && std::filesystem::exists(o.path)) throw Error(ErrorKind::io, o.path + ": found a file that is not of a study, expected none; choose another folder for -o (" + study.folder + ")");
+}
+
+class Runner {
+public:
+    Runner(const Study& study, const StudyStore& store) : study_(study), store_(store), bar_("study", study.quiet) {}
+
+    std::vector<StudyRow> run() {
+        struct Place {
+            std::string method;
+            double tolerance, weight;
+            std::optional<StudyRow> known;
+        };
+        std::vector<Place> places;
+        std::size_t kept = 0;
+        for (const std::string& method : study_.methods)
+            for (const double tolerance : study_.tolerances) {
+                Place p{method, tolerance, study_.diagonal / tolerance + 1000, {}};  // about as its triangles
+                std::string note;
+                p.known = store_.find(method, tolerance, key(method, tolerance), tolerance == study_.heat_tolerance(), note);
+                if (!note.empty()) say("note: " + note);
+                kept += p.known.has_value();
+                if (!p.known) left_ += p.weight;
+                places.push_back(std::move(p));
+            }
+        if (kept > 0) say(std::to_string(kept) + " of " + std::to_string(places.size()) + " runs were there already");
+        std::vector<StudyRow> rows;
+        for (Place& p : places) {
+            rows.push_back(p.known ? *p.known : make(p.method, p.tolerance, p.weight));
+            if (!p.known) done_ += p.weight;
+        }
+        return rows;
+    }
+
+private:
+    std::string key(const std::string& method, double tolerance) const {
+        return sha256(program_version() + "\n" + study_.geometry_hash + "\n" + method + "\n" + to_text(tolerance) + "\n" + std::to_string(study_.max_triangles));
+    }
+
+    StudyRow make(const std::string& method, double tolerance, double weight) {
+        StudyInput input{study_.patches, tolerance, study_.max_triangles, {}};
+        input.progress = [&](double fraction) { bar_((done_ + weight * fraction) / left_); };
+        input.progress(0);
+        const StudyResult result = run_study(*find_study_method(method), input);
+        StudyRow row{result.run, key(method, tolerance), study_.threads, {}};
+        if (tolerance == study_.heat_tolerance() && result.run.reached) row.heat = draw(result);
+        store_.save(row);
+        const StudyRun& r = result.run;
+        char text[256];
+        if (r.reached) {
+            std::snprintf(text, sizeof text, "%s at %.3g: %zu triangles, certified error %.3g, %.2f x optimum, %.2f s", method.c_str(), tolerance, r.triangles, r.certified_error, r.ratio(), r.seconds);
+            say(text);
+        } else {
+            say(method + ": " + r.reason);
+        }
+        return row;
+    }
+
+    std::vector<std::string> draw(const StudyResult& result) const {
+        const StudyRun& r = result.run;
+        std::vector<std::string> names;
+        for (const bool certified : {true, false}) {
+            const std::string what = certified ? "certified" : "sampled";
+            char title[160];
+            std::snprintf(title, sizeof title, "%s: %s error at tolerance %.3g, %zu triangles", r.method.c_str(), what.c_str(), r.tolerance, r.triangles);
+            const HeatMap map{result.mesh, certified ? result.certified : result.sampled, r.tolerance, title, what + " error / tolerance"};
+            names.push_back("heat/" + r.method + "-" + what + ".png");
+            write_image(store_.path(names.back()), draw_heat_map(map, study_.scene.camera, kHeatWidth, kHeatHeight), {{"Software", "isoparm " + program_version()}, {"Title", title}});
+        }
+        return names;
+    }
+
+    void say(const std::string& text) const {
+        if (!study_.quiet) std::fprintf(stderr, "%sisoparm study: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", text.c_str());
+    }
+
+    const Study& study_;
+    const StudyStore& store_;
+    ProgressBar bar_;
+    double left_ = 0, done_ = 0;
+};
+
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+Facts provenance_of(const Study& study) {
+    Facts facts = {{"program", "isoparm " + program_version()},
+                   {"compiler", compiler_name()},
+                   {"machine", machine_line()},
+                   {"threads", std::to_string(study.threads)},
+                   {"scene", std::filesystem::path(study.scene.path).filename().string()},
+                   {"scene sha256", study.scene_hash},
+                   {"surfaces sha256", study.geometry_hash},
+                   {"options", study.options},
+                   {"max_triangles", std::to_string(study.max_triangles)},
+                   {"diagonal", to_text(study.diagonal)}};
+    if (!study.reproducible) facts.push_back({"date", date_line()});
+    return facts;
+}
+
+std::string order_json(const std::optional<FittedOrder>& o) { return o ? "{\"order\": " + json_text(o->order) + ", \"points\": " + std::to_string(o->points) + "}" : "null"; }
+
+void write_json(std::ostream& out, const Study& study, const Facts& facts, const std::vector<StudyRow>& rows) {
+    out << "{\"isoparm_study\": 1,\n \"title\": " << json_text(study.scene.title) << ",\n \"provenance\": {";
+    for (std::size_t i = 0; i < facts.size(); ++i) out << (i ? ",\n  " : "\n  ") << json_text(facts[i].first) << ": " << json_text(facts[i].second);
+    out << "},\n \"columns\": {";
+    bool first = true;
+    for (const StudyColumn& c : study_columns()) {
+        out << (first ? "\n  " : ",\n  ") << json_text(std::string(c.name)) << ": {\"unit\": " << json_text(std::string(c.unit)) << ", \"meaning\": " << json_text(std::string(c.meaning)) << "}";
+        first = false;
+    }
+    out << "},\n \"methods\": [";
+    for (std::size_t i = 0; i < study.methods.size(); ++i) {
+        const MethodOrders o = fitted_orders(rows, study.methods[i]);
+        out << (i ? ",\n  " : "\n  ") << "{\"name\": " << json_text(study.methods[i]) << ", \"summary\": " << json_text(std::string(find_study_method(study.methods[i])->summary))
+            << ",\n   \"order\": {\"certified\": " << order_json(o.certified) << ", \"sampled\": " << order_json(o.sampled) << "}}";
+    }
+    out << "],\n \"runs\": [";
+    for (std::size_t i = 0; i < rows.size(); ++i) out << (i ? ",\n  " : "\n  ") << row_json(rows, i);
+    out << "]}\n";
+}
+
+void write_results(const Study& study, const StudyStore& store, const std::vector<StudyRow>& rows) {
+    const auto write = [&](const std::string& name, const std::string& bytes) { write_atomically(store.path(name), [&](std::ostream& out) { out << bytes; }); };
+    StudyFacts facts{study.scene.title.empty() ? std::filesystem::path(study.scene.path).stem().string() : study.scene.title, provenance_of(study), study.methods, study.heat_tolerance()};
+    write_atomically(store.path("study.json"), [&](std::ostream& out) { write_json(out, study, facts.provenance, rows); });
+    write_atomically(store.path("study.csv"), [&](std::ostream& out) { write_csv(out, rows); });
+    std::vector<std::string> svg;
+    for (const StudyPlot& p : study_plots(rows, study.methods)) {
+        const Drawing drawing = draw_plot(p.plot, kPlotWidth, kPlotHeight);
+        svg.push_back(vector_file(drawing, kPlotWidth, kPlotHeight, VectorFormat::svg, p.plot.title));
+        write(p.file + ".svg", svg.back());
+        write(p.file + ".pdf", vector_file(drawing, kPlotWidth, kPlotHeight, VectorFormat::pdf, p.plot.title));
+    }
+    std::vector<std::pair<std::string, std::string>> png;
+    for (const StudyRow& r : rows)
+        if (r.run.tolerance == study.heat_tolerance())
+            for (const std::string& name : r.heat) png.push_back({name, read_text_file(store.path(name))});
+    write("index.html", study_page(facts, rows, svg, png));
+}
+
+int run(const std::vector<std::string>& arguments) {
+    const Options options("study", arguments,
+                          {{"-o", true}, {"--surface", true}, {"--tolerances", true}, {"--methods", true}, {"--max-triangles", true}, {"--set", true}, {"--reproducible", false}});
+    Study study;
+    study.folder = options.required("-o", "the folder to write to");
+    study.methods = chosen_methods(options);
+    study.quiet = options.quiet();
+    study.reproducible = options.has("--reproducible");
+    if (const auto most = options.integer("--max-triangles", 1, 200'000'000)) study.max_triangles = std::size_t(*most);
+    study.scene = options.scene();
+    study.patches = select_patches(study.scene, options).patches;
+    study.diagonal = finite_diagonal(study.scene, bounding_box(study.patches));
+    study.tolerances = chosen_tolerances(options, study.diagonal);
+    if (!(study.tolerances.back() > 0)) throw_input(study.scene.place + ": found surfaces of size 0, expected some that a relative tolerance can be taken of");
+    study.threads = std::min(int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)), tbb::this_task_arena::max_concurrency());
+    study.scene_hash = sha256(read_text_file(study.scene.path));
+    study.geometry_hash = geometry_of(study.patches);
+    for (const char* name : {"--surface", "--tolerances", "--methods", "--set"})
+        for (const std::string& value : options.values(name)) study.options += (study.options.empty() ? "" : " ") + std::string(name) + " " + value;
+
+    const StudyStore store(study.folder);
+    check_folder(study, store, options);
+    const std::vector<StudyRow> rows = Runner(study, store).run();
+    write_results(study, store, rows);
+    if (!study.quiet) std::fprintf(stderr, "%s: %zu runs\n", store.path("index.html").c_str(), rows.size());
+    return kSuccess;
+}
+
+}  // namespace
+
+const Command study_command = {"study", "methods of tessellation compared: tables, diagrams, one page", kHelp, run};
+
+}  // namespace isoparm
