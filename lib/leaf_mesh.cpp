@@ -7,115 +7,13 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "leaf_rims.h"
 #include "refine.h"
 
 namespace isoparm {
 namespace {
 
-constexpr double kSame = 1e-9;  // of a rim: nearer requests of two patches are one vertex
 constexpr std::uint32_t kInside = UINT32_MAX;
-
-/// One vertex on a rim, and its parameter on the edge of each use.
-struct RimVertex {
-    double f = 0;
-    std::array<double, 2> t{};
-    std::array<bool, 2> lattice{};  // is it a lattice point of the use's patch?
-    std::uint32_t vertex = 0;
-};
-
-/// Parameters of the lattice points on edge k that leaves have as corners, growing.
-std::vector<double> requests(const Patch& patch, const Leaves& leaves, int k) {
-    std::vector<double> list;
-    for (const Leaf& leaf : leaves.list)
-        for (int c = 0; c < leaf.sides; ++c)
-            if (leaves.on_edge(patch, k, leaf.corner[c])) list.push_back(edge_parameter(patch, k, leaves.at(leaf.corner[c])));
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    return list;
-}
-
-Point on_edge(const Composite& surface, const RimUse& use, double t) {
-    const Patch& patch = surface[use.member].patch;
-    const Vec2 p = patch.edge_point(use.edge, t);
-    return patch.point(p.x, p.y);
-}
-double projected(const Composite& surface, const RimUse& use, const Point& p) {
-    return nearest_on_edge(surface[use.member].patch, use.edge, p, std::min(use.t0, use.t1), std::max(use.t0, use.t1));
-}
-
-class Rims {
-public:
-    Rims(const Composite& surface, const Topology& topology, const std::vector<Leaves>& leaves) : surface_(surface), topology_(topology), asked_(surface.size()) {
-        for (std::size_t m = 0; m < surface.size(); ++m)
-            for (int k = 0; k < surface[m].patch.edges(); ++k) asked_[m][k] = requests(surface[m].patch, leaves[m], k);
-    }
-
-    /// The vertices of a rim, its two ends included, f growing.
-    std::vector<RimVertex> cut(std::uint32_t r) const {
-        const Rim& rim = topology_.rims[r];
-        std::vector<RimVertex> all{end_of(rim, 0)};
-        if (rim.uses.size() == 2 && !rim.uses[1].affine && inside(rim.uses[0]).size() == inside(rim.uses[1]).size()) {
-            // Other parameters, but as many vertices: one to one.
-            for (const double t : inside(rim.uses[0])) all.push_back(both(rim, 0, t));
-            for (RimVertex& v : all) v.lattice[1] = v.lattice[0];
-        } else {
-            for (int u = 0; u < int(rim.uses.size()); ++u)
-                for (const double t : inside(rim.uses[u])) all.push_back(both(rim, u, t));
-        }
-        all.push_back(end_of(rim, 1));
-        std::stable_sort(all.begin(), all.end(), [](const RimVertex& a, const RimVertex& b) { return a.f < b.f; });
-        std::vector<RimVertex> kept;
-        for (const RimVertex& v : all) {
-            const auto clash = [&](int u) { return v.lattice[u] && kept.back().lattice[u]; };  // two corners, however near
-            if (kept.empty() || v.f - kept.back().f > kSame || clash(0) || clash(1)) {
-                kept.push_back(v);
-                continue;
-            }
-            for (int u = 0; u < 2; ++u)
-                if (v.lattice[u]) kept.back().lattice[u] = true, kept.back().t[u] = v.t[u];
-        }
-        return kept;
-    }
-
-private:
-    RimVertex end_of(const Rim& rim, int end) const {
-        RimVertex v;
-        v.f = end;
-        for (std::size_t u = 0; u < rim.uses.size(); ++u) {
-            v.t[u] = end ? rim.uses[u].t1 : rim.uses[u].t0;
-            for (const double t : asked_[rim.uses[u].member][rim.uses[u].edge])
-                if (std::fabs(t - v.t[u]) < kSame) v.t[u] = t, v.lattice[u] = true;
-        }
-        return v;
-    }
-    /// Requests of a use strictly between its ends, in the direction of the rim.
-    std::vector<double> inside(const RimUse& use) const {
-        const auto [low, high] = std::minmax(use.t0, use.t1);
-        std::vector<double> list;
-        for (const double t : asked_[use.member][use.edge])
-            if (t - low > kSame && high - t > kSame) list.push_back(t);
-        if (use.t1 < use.t0) std::reverse(list.begin(), list.end());
-        return list;
-    }
-    /// What use u asks for at t, seen by both.
-    RimVertex both(const Rim& rim, int u, double t) const {
-        const RimUse& owner = rim.uses[0];
-        const auto fraction = [](const RimUse& use, double at) { return (at - use.t0) / (use.t1 - use.t0); };
-        RimVertex v;
-        v.t[u] = t, v.lattice[u] = true;
-        const bool affine = rim.uses.size() < 2 || rim.uses[1].affine;
-        v.f = u == 0 || affine ? fraction(rim.uses[u], t) : fraction(owner, projected(surface_, owner, on_edge(surface_, rim.uses[1], t)));
-        v.f = std::clamp(v.f, 2 * kSame, 1 - 2 * kSame);
-        if (rim.uses.size() < 2) return v;
-        const RimUse& other = rim.uses[1 - u];
-        v.t[1 - u] = affine || u == 1 ? other.t0 + v.f * (other.t1 - other.t0) : projected(surface_, other, on_edge(surface_, owner, t));
-        return v;
-    }
-
-    const Composite& surface_;
-    const Topology& topology_;
-    std::vector<std::array<std::vector<double>, 4>> asked_;
-};
 
 using Chain = std::vector<std::uint32_t>;
 
@@ -131,6 +29,7 @@ public:
 
     /// Corners along the edges, then those inside.
     void add_corners(const Topology& topology, const std::vector<std::vector<RimVertex>>& rims) {
+        known_.reserve(2 * leaves_.list.size());
         std::array<std::vector<std::uint64_t>, 4> keys;
         for (int k = 0; k < patch_.edges(); ++k) keys[k] = keys_on(k);
         for (int k = 0; k < patch_.edges(); ++k) {
@@ -186,7 +85,8 @@ private:
         std::vector<std::pair<double, std::uint64_t>> found;
         for (const Leaf& leaf : leaves_.list)
             for (int c = 0; c < leaf.sides; ++c)
-                if (leaves_.on_edge(patch_, k, leaf.corner[c])) found.push_back({edge_parameter(patch_, k, leaves_.at(leaf.corner[c])), leaf.corner[c].key()});
+                if (leaves_.on_edge(patch_, k, leaf.corner[c]))
+                    found.push_back({edge_parameter(patch_, k, leaves_.at(leaf.corner[c])), leaf.corner[c].key()});
         std::sort(found.begin(), found.end());
         std::vector<std::uint64_t> keys;
         for (const auto& [t, key] : found)
@@ -222,8 +122,10 @@ private:
         }
         const bool halves = (a.i + b.i) % 2 == 0 && (a.j + b.j) % 2 == 0;
         const LatticePoint m = middle(a, b);
-        if (halves && known_.count(m.key())) walk(a, m, chain), walk(m, b, chain);
-        else chain.push_back(ca);
+        if (halves && known_.count(m.key()))
+            walk(a, m, chain), walk(m, b, chain);
+        else
+            chain.push_back(ca);
     }
     void triangle(std::uint32_t leaf, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         const auto va = part_.vertex[a], vb = part_.vertex[b], vc = part_.vertex[c];
@@ -232,8 +134,10 @@ private:
             leaf_of_left_out_.push_back(leaf);
             return;
         }
-        if (part_.flipped) part_.triangles.push_back({a, c, b});
-        else part_.triangles.push_back({a, b, c});
+        if (part_.flipped)
+            part_.triangles.push_back({a, c, b});
+        else
+            part_.triangles.push_back({a, b, c});
         leaf_of_.push_back(leaf);
     }
     void add_leaf(std::uint32_t index, const Point& on_surface, const std::vector<Point>& positions) {
@@ -254,7 +158,10 @@ private:
             return;
         }
         if (extra == 0 && n == 4) {
-            const auto off = [&](int i, int k) { return distance(on_surface, 0.5 * (positions[part_.vertex[all[std::size_t(i)]]] + positions[part_.vertex[all[std::size_t(k)]]])); };
+            const auto off = [&](int i, int k) {
+                return distance(on_surface,
+                                0.5 * (positions[part_.vertex[all[std::size_t(i)]]] + positions[part_.vertex[all[std::size_t(k)]]]));
+            };
             apex = off(1, 3) < off(0, 2) ? 1 : 0;
         }
         for (std::size_t i = 1; i + 1 < n; ++i) triangle(index, all[apex], all[(apex + i) % n], all[(apex + i + 1) % n]);
@@ -265,7 +172,7 @@ private:
     MeshPart part_;
     std::array<Chain, 4> side_;                                              // corners along each edge, in its direction
     std::array<std::unordered_map<std::uint32_t, std::uint32_t>, 4> place_;  // of a corner on an edge
-    std::unordered_map<std::uint64_t, std::uint32_t> known_;                 // corners by lattice point
+    std::unordered_map<std::uint64_t, std::uint32_t, LatticeHash> known_;    // corners by lattice point
     std::uint32_t first_inside_ = 0;
     std::vector<std::uint32_t> leaf_of_, leaf_of_left_out_;
 };
@@ -296,29 +203,6 @@ bool Leaves::on_edge(const Patch& patch, int k, const LatticePoint& p) const {
     return k == 0 ? p.j == 0 : k == 1 ? p.i == steps * (us.size() - 1) : k == 2 ? p.j == steps * (vs.size() - 1) : p.i == 0;
 }
 
-std::vector<RimPiece> rim_pieces(const Composite& surface, const Topology& topology, const Leaves& leaves, std::uint32_t r, int u) {
-    const RimUse& use = topology.rims[r].uses[std::size_t(u)];
-    const Patch& patch = surface[use.member].patch;
-    std::vector<RimPiece> pieces;
-    for (std::uint32_t i = 0; i < leaves.list.size(); ++i) {
-        const Leaf& leaf = leaves.list[i];
-        for (int c = 0; c < leaf.sides; ++c) {
-            const LatticePoint &a = leaf.corner[c], &b = leaf.corner[(c + 1) % leaf.sides];
-            if (!leaves.on_edge(patch, use.edge, a) || !leaves.on_edge(patch, use.edge, b)) continue;
-            const auto fraction = [&](const LatticePoint& p) {
-                const double t = edge_parameter(patch, use.edge, leaves.at(p));
-                if (use.affine) return (t - use.t0) / (use.t1 - use.t0);
-                const RimUse& owner = topology.rims[r].uses[0];
-                return (projected(surface, owner, on_edge(surface, use, t)) - owner.t0) / (owner.t1 - owner.t0);
-            };
-            const auto [low, high] = std::minmax({fraction(a), fraction(b)});
-            if (high > kSame && low < 1 - kSame) pieces.push_back({low, high, i});
-        }
-    }
-    std::sort(pieces.begin(), pieces.end(), [](const RimPiece& a, const RimPiece& b) { return a.f0 < b.f0; });
-    return pieces;
-}
-
 LeafMesh mesh_of(const Composite& surface, const Topology& topology, const std::vector<Leaves>& leaves) {
     LeafMesh result;
     std::vector<Point>& positions = result.mesh.positions;
@@ -330,7 +214,8 @@ LeafMesh mesh_of(const Composite& surface, const Topology& topology, const std::
         rims[r] = cuts.cut(r);
         for (RimVertex& v : rims[r]) {
             v.vertex = rim.collapsed || v.f == 0 ? rim.a : v.f == 1 ? rim.b : std::uint32_t(positions.size());
-            if (v.vertex == positions.size()) positions.push_back(on_edge(surface, rim.uses[0], rim.uses[0].t0 + v.f * (rim.uses[0].t1 - rim.uses[0].t0)));
+            if (v.vertex == positions.size())
+                positions.push_back(on_edge(surface, rim.uses[0], rim.uses[0].t0 + v.f * (rim.uses[0].t1 - rim.uses[0].t0)));
         }
         for (std::size_t i = 0; !rim.collapsed && rim.uses.size() == 1 && i + 1 < rims[r].size(); ++i)
             result.open_edges.push_back({rims[r][i].vertex, rims[r][i + 1].vertex});

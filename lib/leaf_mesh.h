@@ -16,6 +16,13 @@ struct LatticePoint {
     std::uint32_t i = 0, j = 0;
     std::uint64_t key() const { return (std::uint64_t(i) << 32) | j; }
 };
+/// Of keys: points of a lattice have many zeros in common (Fibonacci hashing, the high half mixed in).
+struct LatticeHash {
+    std::size_t operator()(std::uint64_t key) const {
+        key *= 0x9e3779b97f4a7c15u;
+        return key ^ (key >> 32);
+    }
+};
 inline LatticePoint middle(const LatticePoint& a, const LatticePoint& b) { return {(a.i + b.i) / 2, (a.j + b.j) / 2}; }
 
 /// A rectangle of the domain, or a triangle of the triangular one; corners counter-clockwise.

@@ -133,7 +133,8 @@ MeshProver::PartProof MeshProver::bound(const Mesh& mesh, const MeshPart& part, 
         }
         const BoundCell* cell = cells_[part.member].around(data.uv);
         if (cell) proof.bounds[i] = BoundCell::bound(patch, cell, data, tolerance - data.slack, Measure::geometric);
-        if (!(rounding::up(proof.bounds[i].own(Measure::geometric) + data.slack) <= tolerance)) above.store(true, std::memory_order_relaxed);
+        if (!(rounding::up(proof.bounds[i].own(Measure::geometric) + data.slack) <= tolerance))
+            above.store(true, std::memory_order_relaxed);
     });
     proof.above = above;
     return proof;
@@ -164,7 +165,9 @@ std::optional<MeshProof> MeshProver::operator()(const Mesh& mesh, double toleran
             for (int k = 0; i < n && own.quiet && k < 3; ++k) {
                 const int edge = edge_of(part, k);
                 const auto other = beside[i][k];
-                if (other == kNobody || on_line(part.uv[c[edge]], part.uv[c[(edge + 1) % 3]], cells_[part.member].us, cells_[part.member].vs)) continue;
+                if (other == kNobody ||
+                    on_line(part.uv[c[edge]], part.uv[c[(edge + 1) % 3]], cells_[part.member].us, cells_[part.member].vs))
+                    continue;
                 neighbours[edge] = &proof.bounds[other];
                 slack = std::max(slack, slack_of(other));
                 if (proof.bounds[other].quiet && proof.bounds[other].normal > proof.bounds[worst].normal) worst = other;

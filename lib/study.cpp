@@ -19,7 +19,9 @@ double processor_time() {
 }
 
 double smallest_angle(const Point& a, const Point& b, const Point& c) {
-    const auto angle = [](const Point& at, const Point& p, const Point& q) { return std::atan2(length(cross(p - at, q - at)), dot(p - at, q - at)); };
+    const auto angle = [](const Point& at, const Point& p, const Point& q) {
+        return std::atan2(length(cross(p - at, q - at)), dot(p - at, q - at));
+    };
     return std::min({angle(a, b, c), angle(b, c, a), angle(c, a, b)}) * 180 / std::numbers::pi;
 }
 
@@ -91,11 +93,19 @@ StudyResult run_study(const StudyMethod& method, const StudyInput& input) {
     return result;
 }
 
+void sharpen_bounds(const Composite& surface, StudyResult& result) {
+    const MeshProof sharp = *MeshProver(surface)(result.mesh, 0);
+    for (std::size_t p = 0; p < sharp.bound.size(); ++p)
+        for (std::size_t i = 0; i < sharp.bound[p].size(); ++i)
+            result.certified[p][i] = std::min(result.certified[p][i], sharp.bound[p][i]);
+}
+
 std::optional<FittedOrder> fit_order(const std::vector<double>& triangles, const std::vector<double>& errors) {
     double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
     std::vector<std::array<double, 2>> points;
     for (std::size_t i = 0; i < std::min(triangles.size(), errors.size()); ++i)
-        if (triangles[i] > 0 && errors[i] > 0 && std::isfinite(triangles[i] + errors[i])) points.push_back({std::log(triangles[i]), std::log(errors[i])});
+        if (triangles[i] > 0 && errors[i] > 0 && std::isfinite(triangles[i] + errors[i]))
+            points.push_back({std::log(triangles[i]), std::log(errors[i])});
     for (const auto& [x, y] : points) n += 1, sx += x, sy += y;
     if (n < 2) return {};
     for (const auto& [x, y] : points) sxx += (x - sx / n) * (x - sx / n), sxy += (x - sx / n) * (y - sy / n);

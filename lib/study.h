@@ -31,7 +31,7 @@ struct StudyMesh {
 /// One row of the table of methods, lib/study_methods.cpp.
 struct StudyMethod {
     const char* name;
-    const char* summary;                        // what it does, for people
+    const char* summary;                         // what it does, for people
     StudyMesh (*make)(const StudyInput& input);  // throws Error(budget) when the tolerance is not reached
 };
 const std::vector<StudyMethod>& study_methods();
@@ -63,13 +63,16 @@ struct StudyRun {
 
 struct StudyResult {
     StudyRun run;
-    Mesh mesh;                          // empty when the tolerance was not reached
+    Mesh mesh;                           // empty when the tolerance was not reached
     TriangleNumbers certified, sampled;  // of each triangle
 };
 
-/// Runs one method at one tolerance. Times are those of the method until its mesh is proved, without the study's own certificate and samples.
-/// What is not reached is told in the run; other errors are thrown.
+/// Runs one method at one tolerance. Times are those of the method until its mesh is proved, without the study's own certificate and
+/// samples. What is not reached is told in the run; other errors are thrown.
 StudyResult run_study(const StudyMethod& method, const StudyInput& input);
+
+/// Makes `certified` as sharp as it gets, also far below the tolerance, where run_study() does not care.
+void sharpen_bounds(const Composite& surface, StudyResult& result);
 
 /// Error ~ h^order with h = triangles^(-1/2): -2 times the least-squares slope of log(error) over log(triangles).
 struct FittedOrder {

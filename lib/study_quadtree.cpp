@@ -73,7 +73,7 @@ private:
     }
 
     Leaves leaves_;
-    std::unordered_set<std::uint64_t> corners_;
+    std::unordered_set<std::uint64_t, LatticeHash> corners_;
 };
 
 class Forest {
@@ -89,7 +89,8 @@ public:
             LeafMesh made = mesh_of(input_.surface, topology_, leaves());
             const MeshProof proof = *prover_(made.mesh, input_.tolerance);
             if (proof.geometric <= input_.tolerance && manifold(made)) return checked(std::move(made), proof);
-            if (input_.progress && proof.geometric > 0) input_.progress(std::clamp(std::sqrt(input_.tolerance / proof.geometric), 0.0, 0.9));
+            if (input_.progress && proof.geometric > 0)
+                input_.progress(std::clamp(std::sqrt(input_.tolerance / proof.geometric), 0.0, 0.9));
             if (round > 3) check_budget(0.3 * predicted(proof));
             split(made, proof);
         }
@@ -129,7 +130,8 @@ private:
                 if (marked[i]) any = trees_[m].split(i) || any;
         }
         if (!any)
-            throw Error(ErrorKind::budget, "the tolerance " + to_text(input_.tolerance) + " was not reached: the leaves that fail are as small as they can be");
+            throw Error(ErrorKind::budget, "the tolerance " + to_text(input_.tolerance) +
+                                               " was not reached: the leaves that fail are as small as they can be");
     }
 
     void restrict_sizes() {

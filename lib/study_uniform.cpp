@@ -16,8 +16,10 @@ Leaves grid(const Patch& patch, std::uint32_t n) {
         const auto [i0, j0] = cell.corner[0];
         for (std::uint32_t i = i0; i < i0 + n; ++i)
             for (std::uint32_t j = j0; j < (cell.sides == 3 ? n - i : j0 + n); ++j) {
-                if (cell.sides == 4) list.push_back({{LatticePoint{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}, 4});
-                else list.push_back({{LatticePoint{i, j}, {i + 1, j}, {i, j + 1}, {i, j}}, 3});
+                if (cell.sides == 4)
+                    list.push_back({{LatticePoint{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}, 4});
+                else
+                    list.push_back({{LatticePoint{i, j}, {i + 1, j}, {i, j + 1}, {i, j}}, 3});
                 if (cell.sides == 3 && i + j + 1 < n) list.push_back({{LatticePoint{i + 1, j}, {i + 1, j + 1}, {i, j + 1}, {i + 1, j}}, 3});
             }
     }
@@ -43,7 +45,8 @@ public:
             }
             // Error falls about as 1 / n^2; further away that is a guess only.
             const double guess = std::ceil(double(fails_) * std::sqrt(error / input_.tolerance));
-            if (fails_ >= 4 && per_square_ * guess * guess > 4 * double(input_.max_triangles)) not_reached(input_, per_square_ * guess * guess);
+            if (fails_ >= 4 && per_square_ * guess * guess > 4 * double(input_.max_triangles))
+                not_reached(input_, per_square_ * guess * guess);
             error = try_n(std::uint32_t(std::clamp(guess, fails_ + 1.0, 4.0 * fails_)));
         }
         for (std::uint32_t step = 1; fits_ - fails_ > 1; step = std::min(2 * step, (fits_ - fails_ + 1) / 2))
@@ -63,8 +66,10 @@ private:
     double try_n(std::uint32_t n) {
         LeafMesh made = mesh(n);
         MeshProof proof = *prover_(made.mesh, input_.tolerance);
-        if (proof.geometric <= input_.tolerance && manifold(made)) keep(n, std::move(made), std::move(proof));
-        else fails_ = n;
+        if (proof.geometric <= input_.tolerance && manifold(made))
+            keep(n, std::move(made), std::move(proof));
+        else
+            fails_ = n;
         report(proof.geometric);
         return proof.geometric;
     }

@@ -104,8 +104,8 @@ Drawing legend(const HeatMap& map, const Layout& l) {
 }  // namespace
 
 Image draw_heat_map(const HeatMap& map, const CameraSettings& settings, int width, int height) {
-    Layout l{width, height, 0, 0, std::max(9.0, height / 44.0)};
-    l.top = int(2.4 * l.letter), l.right = int(7 * l.letter);
+    Layout l{width, height, 0, 0, std::max(9.0, height / 32.0)};
+    l.top = int(2.4 * l.letter), l.right = int(6.6 * l.letter);
     CameraSettings fitted = settings;
     fitted.fit = true;
     Point low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};

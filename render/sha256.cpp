@@ -27,7 +27,8 @@ struct Constants {
     static Word fraction(unsigned p, int power) {
         unsigned __int128 x = 0;
         for (int bit = 36; bit >= 0; --bit) {
-            const unsigned __int128 y = x | (static_cast<unsigned __int128>(1) << bit), bound = static_cast<unsigned __int128>(p) << (32 * power);
+            const unsigned __int128 y = x | (static_cast<unsigned __int128>(1) << bit), bound = static_cast<unsigned __int128>(p)
+                                                                                                << (32 * power);
             if ((power == 2 ? y * y : y * y * y) <= bound) x = y;
         }
         return static_cast<Word>(x);
@@ -36,14 +37,16 @@ struct Constants {
 
 void add_block(std::array<Word, 8>& h, const unsigned char* block, const Constants& c) {
     std::array<Word, 64> w;
-    for (int i = 0; i < 16; ++i) w[i] = Word(block[4 * i]) << 24 | Word(block[4 * i + 1]) << 16 | Word(block[4 * i + 2]) << 8 | block[4 * i + 3];
+    for (int i = 0; i < 16; ++i)
+        w[i] = Word(block[4 * i]) << 24 | Word(block[4 * i + 1]) << 16 | Word(block[4 * i + 2]) << 8 | block[4 * i + 3];
     for (int i = 16; i < 64; ++i) {
         const Word a = w[i - 15], b = w[i - 2];
         w[i] = w[i - 16] + w[i - 7] + (std::rotr(a, 7) ^ std::rotr(a, 18) ^ (a >> 3)) + (std::rotr(b, 17) ^ std::rotr(b, 19) ^ (b >> 10));
     }
     std::array<Word, 8> s = h;
     for (int i = 0; i < 64; ++i) {
-        const Word one = s[7] + (std::rotr(s[4], 6) ^ std::rotr(s[4], 11) ^ std::rotr(s[4], 25)) + ((s[4] & s[5]) ^ (~s[4] & s[6])) + c.k[i] + w[i];
+        const Word one =
+            s[7] + (std::rotr(s[4], 6) ^ std::rotr(s[4], 11) ^ std::rotr(s[4], 25)) + ((s[4] & s[5]) ^ (~s[4] & s[6])) + c.k[i] + w[i];
         const Word two = (std::rotr(s[0], 2) ^ std::rotr(s[0], 13) ^ std::rotr(s[0], 22)) + ((s[0] & s[1]) ^ (s[0] & s[2]) ^ (s[1] & s[2]));
         s = {one + two, s[0], s[1], s[2], s[3] + one, s[4], s[5], s[6]};
     }

@@ -30,11 +30,16 @@ code { font-size: .92em; overflow-wrap: anywhere; }
 std::string escaped(const std::string& text) {
     std::string r;
     for (const char c : text) {
-        if (c == '<') r += "&lt;";
-        else if (c == '>') r += "&gt;";
-        else if (c == '&') r += "&amp;";
-        else if (c == '"') r += "&quot;";
-        else r += c;
+        if (c == '<')
+            r += "&lt;";
+        else if (c == '>')
+            r += "&gt;";
+        else if (c == '&')
+            r += "&amp;";
+        else if (c == '"')
+            r += "&quot;";
+        else
+            r += c;
     }
     return r;
 }
@@ -53,11 +58,12 @@ std::string base64(const std::string& bytes) {
     return text;
 }
 
-/// A number as a reader wants it: whole ones whole, others with four digits.
+/// A number as a reader wants it: whole ones and large ones whole, others with four digits.
 std::string brief(const std::string& number) {
     if (number.find_first_of(".e") == std::string::npos) return number;
+    const double x = std::strtod(number.c_str(), nullptr);
     char text[32];
-    std::snprintf(text, sizeof text, "%.4g", std::strtod(number.c_str(), nullptr));
+    std::snprintf(text, sizeof text, x >= 1000 && x < 1e15 ? "%.0f" : "%.4g", x);
     return text;
 }
 std::string brief(double x) {
@@ -71,7 +77,8 @@ std::string inlined(std::string svg, std::size_t number, const std::string& labe
     if (const auto start = svg.find("<svg"); start != std::string::npos) svg.erase(0, start);
     const std::string own = "plot" + std::to_string(number) + "-";
     for (const char* mark : {" id=\"", "url(#", "href=\"#"})
-        for (std::size_t at = svg.find(mark); at != std::string::npos; at = svg.find(mark, at + 1)) svg.insert(at + std::string(mark).size(), own);
+        for (std::size_t at = svg.find(mark); at != std::string::npos; at = svg.find(mark, at + 1))
+            svg.insert(at + std::string(mark).size(), own);
     const auto end = svg.find("<svg") + 4;
     svg.insert(end, " role=\"img\" aria-label=\"" + escaped(label) + "\"");
     return svg;
@@ -80,14 +87,19 @@ std::string inlined(std::string svg, std::size_t number, const std::string& labe
 std::string table(const std::vector<StudyRow>& rows) {
     std::string text = "<div class=\"scroll\"><table>\n<thead><tr>";
     for (const StudyColumn& c : study_columns())
-        text += std::string("<th scope=\"col\"") + (c.number ? " class=\"number\"" : "") + " title=\"" + escaped(c.meaning) + "\">" + c.name + "</th>";
+        text += std::string("<th scope=\"col\"") + (c.number ? " class=\"number\"" : "") + " title=\"" + escaped(c.meaning) + "\">" +
+                c.name + "</th>";
     text += "</tr></thead>\n<tbody>\n";
     for (std::size_t i = 0; i < rows.size(); ++i) {
         text += i > 0 && rows[i].run.method != rows[i - 1].run.method ? "<tr class=\"first\">" : "<tr>";
         for (const StudyColumn& c : study_columns()) {
             const std::string value = c.value(rows, i);
             const bool missed = value == "not reached";
-            text += std::string("<td") + (c.number ? " class=\"number\"" : missed ? " class=\"missed\"" : "") + ">" + (c.number ? brief(value) : escaped(value)) + "</td>";
+            text += std::string("<td") +
+                    (c.number ? " class=\"number\""
+                     : missed ? " class=\"missed\""
+                              : "") +
+                    ">" + (c.number ? brief(value) : escaped(value)) + "</td>";
         }
         text += "</tr>\n";
     }
@@ -95,52 +107,73 @@ std::string table(const std::vector<StudyRow>& rows) {
 }
 
 std::string meanings() {
-    std::string text = "<table><thead><tr><th scope=\"col\">column</th><th scope=\"col\">unit</th><th scope=\"col\">meaning</th></tr></thead><tbody>\n";
-    for (const StudyColumn& c : study_columns()) text += std::string("<tr><td><code>") + c.name + "</code></td><td>" + c.unit + "</td><td>" + escaped(c.meaning) + "</td></tr>\n";
+    std::string text =
+        "<table><thead><tr><th scope=\"col\">column</th><th scope=\"col\">unit</th><th scope=\"col\">meaning</th></tr></thead><tbody>\n";
+    for (const StudyColumn& c : study_columns())
+        text += std::string("<tr><td><code>") + c.name + "</code></td><td>" + c.unit + "</td><td>" + escaped(c.meaning) + "</td></tr>\n";
     return text + "</tbody></table>\n";
 }
 
 std::string orders(const StudyFacts& facts, const std::vector<StudyRow>& rows) {
     std::string text =
-        "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">method</th><th scope=\"col\">what it does</th><th scope=\"col\" class=\"number\">order, certified</th>"
+        "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">method</th><th scope=\"col\">what it does</th><th scope=\"col\" "
+        "class=\"number\">order, certified</th>"
         "<th scope=\"col\" class=\"number\">order, sampled</th><th scope=\"col\" class=\"number\">points</th></tr></thead><tbody>\n";
     for (const std::string& m : facts.methods) {
         const MethodOrders o = fitted_orders(rows, m);
         const StudyMethod* method = find_study_method(m);
-        text += "<tr><td>" + escaped(m) + "</td><td>" + (method ? escaped(method->summary) : "") + "</td><td class=\"number\">" + (o.certified ? brief(o.certified->order) : "") +
-                "</td><td class=\"number\">" + (o.sampled ? brief(o.sampled->order) : "") + "</td><td class=\"number\">" + (o.certified ? std::to_string(o.certified->points) : "") + "</td></tr>\n";
+        text += "<tr><td>" + escaped(m) + "</td><td>" + (method ? escaped(method->summary) : "") + "</td><td class=\"number\">" +
+                (o.certified ? brief(o.certified->order) : "") + "</td><td class=\"number\">" + (o.sampled ? brief(o.sampled->order) : "") +
+                "</td><td class=\"number\">" + (o.certified ? std::to_string(o.certified->points) : "") + "</td></tr>\n";
     }
     return text + "</tbody></table></div>\n";
 }
 
 }  // namespace
 
-std::string study_page(const StudyFacts& facts, const std::vector<StudyRow>& rows, const std::vector<std::string>& svg, const std::vector<std::pair<std::string, std::string>>& png) {
+std::string study_page(const StudyFacts& facts, const std::vector<StudyRow>& rows, const std::vector<std::string>& svg,
+                       const std::vector<std::pair<std::string, std::string>>& png) {
     std::size_t missed = 0;
     for (const StudyRow& r : rows) missed += !r.run.reached;
-    std::string text = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-                       "<meta name=\"generator\" content=\"isoparm study\">\n<title>Tessellation study: " + escaped(facts.title) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n";
-    text += "<h1>Tessellation study: " + escaped(facts.title) + "</h1>\n<p class=\"soft\">" + std::to_string(facts.methods.size()) + " methods, " + std::to_string(rows.size()) + " runs" +
+    std::string text =
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, "
+        "initial-scale=1\">\n"
+        "<meta name=\"generator\" content=\"isoparm study\">\n<title>Tessellation study: " +
+        escaped(facts.title) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n";
+    text += "<h1>Tessellation study: " + escaped(facts.title) + "</h1>\n<p class=\"soft\">" + std::to_string(facts.methods.size()) +
+            " methods, " + std::to_string(rows.size()) + " runs" +
             (missed ? ", " + std::to_string(missed) + " of which did not reach their tolerance" : "") + ".</p>\n";
-    text += "<p>Every mesh has the same certificate: <b>certified error</b> is proved to bound the distance of mesh and surface, both ways, with every rounding error counted. "
-            "<b>Sampled error</b> is the largest distance that was seen at some points, and proves nothing.</p>\n";
-    text += "<h2>Methods and orders</h2>\n<p>The order <i>p</i> is fitted by least squares to log(error) over log(triangles), error ~ <i>h</i><sup><i>p</i></sup> with "
-            "<i>h</i> = triangles<sup>&minus;1/2</sup>, over the runs that reached their tolerance.</p>\n" + orders(facts, rows);
+    text +=
+        "<p>Every mesh has the same certificate: <b>certified error</b> is proved to bound the distance of mesh and surface, both ways, "
+        "with every rounding error counted. "
+        "<b>Sampled error</b> is the largest distance that was seen at some points, and proves nothing.</p>\n";
+    text +=
+        "<h2>Methods and orders</h2>\n<p>The order <i>p</i> is fitted by least squares to log(error) over log(triangles), error ~ "
+        "<i>h</i><sup><i>p</i></sup> with "
+        "<i>h</i> = triangles<sup>&minus;1/2</sup>, over the runs that reached their tolerance. Two is the order of flat triangles; more "
+        "means that coarse tolerances take more than their share of triangles.</p>\n" +
+        orders(facts, rows);
     const auto plots = study_plots(rows, facts.methods);
     text += "<h2>Diagrams</h2>\n<p class=\"soft\">The same as SVG and PDF, for print, lie beside this page.</p>\n<div class=\"figures\">\n";
     for (std::size_t i = 0; i < std::min(plots.size(), svg.size()); ++i)
-        text += "<figure>" + inlined(svg[i], i, plots[i].plot.title) + "<figcaption>" + escaped(plots[i].caption) + "</figcaption></figure>\n";
+        text +=
+            "<figure>" + inlined(svg[i], i, plots[i].plot.title) + "<figcaption>" + escaped(plots[i].caption) + "</figcaption></figure>\n";
     text += "</div>\n";
     if (!png.empty()) {
         text += "<h2>Where the error is</h2>\n<p>Error of each triangle at the tolerance " + brief(facts.heat_tolerance) +
-                " scene units, as a part of that tolerance, on a logarithmic scale; a hundredth and less is darkest. The certified error is what the proof gives, which is sharp where it has to be: "
-                "as soon as a triangle is known to be below the tolerance, no sharper bound is sought.</p>\n<div class=\"figures\">\n";
+                " scene units, as a part of that tolerance, on a logarithmic scale; a hundredth and less is darkest. Where the certified "
+                "error is far above the sampled one, "
+                "either the triangle is too coarse for the distance along the normal, so that the distance at equal parameters counts, or "
+                "a neighbour at an angle is in the way.</p>\n<div class=\"figures\">\n";
         for (const auto& [name, bytes] : png)
-            text += "<figure><img alt=\"" + escaped(name) + "\" src=\"data:image/png;base64," + base64(bytes) + "\"><figcaption>" + escaped(name) + "</figcaption></figure>\n";
+            text += "<figure><img alt=\"" + escaped(name) + "\" src=\"data:image/png;base64," + base64(bytes) + "\"><figcaption><code>" +
+                    escaped(name) + "</code></figcaption></figure>\n";
         text += "</div>\n";
     }
-    text += "<h2>All runs</h2>\n" + table(rows) + "<h2>What the columns mean</h2>\n" + meanings() + "<h2>Where this comes from</h2>\n<div class=\"scroll\"><table><tbody>\n";
-    for (const auto& [what, value] : facts.provenance) text += "<tr><th scope=\"row\">" + escaped(what) + "</th><td><code>" + escaped(value) + "</code></td></tr>\n";
+    text += "<h2>All runs</h2>\n" + table(rows) + "<h2>What the columns mean</h2>\n" + meanings() +
+            "<h2>Where this comes from</h2>\n<div class=\"scroll\"><table><tbody>\n";
+    for (const auto& [what, value] : facts.provenance)
+        text += "<tr><th scope=\"row\">" + escaped(what) + "</th><td><code>" + escaped(value) + "</code></td></tr>\n";
     return text + "</tbody></table></div>\n</body>\n</html>\n";
 }
 

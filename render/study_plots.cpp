@@ -21,8 +21,10 @@ double ratio_of(const StudyRun& r) { return r.ratio(); }
 std::size_t style_of(const std::string& method) {
     std::size_t n = 0;
     for (const StudyMethod& m : study_methods())
-        if (method == m.name) break;
-        else ++n;
+        if (method == m.name)
+            break;
+        else
+            ++n;
     return n;
 }
 
@@ -70,15 +72,23 @@ PlotSeries optimum(const std::vector<StudyRow>& rows, Value x) {
 
 std::vector<StudyPlot> study_plots(const std::vector<StudyRow>& rows, const std::vector<std::string>& methods) {
     std::vector<StudyPlot> plots = {
-        {"triangles-certified", "Triangles against the certified error. Parallel to the dotted line means second order: twice the triangles, half the error.",
-         {"Triangles against certified error", "certified error (scene units)", "triangles", all_series(rows, methods, certified_of, triangles_of)}},
-        {"triangles-sampled", "The same against the largest error seen at samples, which proves nothing.",
-         {"Triangles against sampled error", "sampled error (scene units)", "triangles", all_series(rows, methods, sampled_of, triangles_of)}},
-        {"triangles-tolerance", "Triangles against the tolerance that was asked for, and the asymptotic optimum.",
+        {"triangles-certified",
+         "Triangles against the certified error. Parallel to the dotted line means second order: twice the triangles, half the error.",
+         {"Triangles against certified error", "certified error (scene units)", "triangles",
+          all_series(rows, methods, certified_of, triangles_of)}},
+        {"triangles-sampled",
+         "The same against the largest error seen at samples, which proves nothing.",
+         {"Triangles against sampled error", "sampled error (scene units)", "triangles",
+          all_series(rows, methods, sampled_of, triangles_of)}},
+        {"triangles-tolerance",
+         "Triangles against the tolerance that was asked for, and the asymptotic optimum.",
          {"Triangles against tolerance", "tolerance (scene units)", "triangles", all_series(rows, methods, tolerance_of, triangles_of)}},
-        {"time-triangles", "Processor time of the method until its mesh was proved. That of uniform holds the search for n, that of quadtree all rounds of refinement.",
+        {"time-triangles",
+         "Processor time of the method until its mesh was proved. That of uniform holds the search for n, that of quadtree all rounds of "
+         "refinement.",
          {"Time against triangles", "triangles", "processor time (s)", all_series(rows, methods, triangles_of, seconds_of)}},
-        {"ratio-tolerance", "How many times the asymptotic optimum a method needs. The optimum is for fine tolerances: at coarse ones no mesh comes near it.",
+        {"ratio-tolerance",
+         "How many times the asymptotic optimum a method needs. The optimum is for fine tolerances: at coarse ones no mesh comes near it.",
          {"Triangles over the optimum", "tolerance (scene units)", "$N / N_{opt}$", all_series(rows, methods, tolerance_of, ratio_of)}},
     };
     for (std::size_t k = 0; k < methods.size(); ++k) {

@@ -32,9 +32,11 @@ std::string text(const Json& object, const char* key) {
 
 /// Members of the file and of a run, in one place for reading and writing.
 template <class Run, class F> void each_number(Run& r, F f) {
-    f("tolerance", r.tolerance), f("certified_error", r.certified_error), f("certified_parametric", r.certified_parametric), f("sampled_error", r.sampled_error);
+    f("tolerance", r.tolerance), f("certified_error", r.certified_error), f("certified_parametric", r.certified_parametric),
+        f("sampled_error", r.sampled_error);
     f("n_opt", r.optimal), f("seconds_wall", r.seconds), f("seconds_processor", r.processor_seconds);
-    f("min_angle_least", r.angles.least), f("min_angle_1_percent", r.angles.percent_1), f("min_angle_5_percent", r.angles.percent_5), f("min_angle_median", r.angles.median);
+    f("min_angle_least", r.angles.least), f("min_angle_1_percent", r.angles.percent_1), f("min_angle_5_percent", r.angles.percent_5),
+        f("min_angle_median", r.angles.median);
 }
 
 StudyRow read_row(const Json& file) {
@@ -50,7 +52,8 @@ StudyRow read_row(const Json& file) {
         const Json value = file.at(key, "a number");
         x = value.is(Json::Kind::null) ? TriangleBound::none : number(file, key);  // as json_text() writes what is infinite
     });
-    if (row.threads < 1 || (run.reached && (run.triangles == 0 || !(run.certified_error <= run.tolerance)))) file.fail("found numbers that do not fit together, expected those of a run");
+    if (row.threads < 1 || (run.reached && (run.triangles == 0 || !(run.certified_error <= run.tolerance))))
+        file.fail("found numbers that do not fit together, expected those of a run");
     return row;
 }
 
@@ -66,9 +69,12 @@ StudyStore::StudyStore(std::string folder) : folder_(std::move(folder)) {
     }
 }
 
-std::string StudyStore::run_file(const std::string& method, double tolerance) { return "runs/" + method + "-" + to_text(tolerance) + ".json"; }
+std::string StudyStore::run_file(const std::string& method, double tolerance) {
+    return "runs/" + method + "-" + to_text(tolerance) + ".json";
+}
 
-std::optional<StudyRow> StudyStore::find(const std::string& method, double tolerance, const std::string& key, bool pictures, std::string& note) const {
+std::optional<StudyRow> StudyStore::find(const std::string& method, double tolerance, const std::string& key, bool pictures,
+                                         std::string& note) const {
     const std::string file = path(run_file(method, tolerance));
     note.clear();
     if (!fs::exists(file)) return {};
@@ -102,10 +108,11 @@ std::optional<StudyRow> StudyStore::find(const std::string& method, double toler
 void StudyStore::save(const StudyRow& row) const {
     const StudyRun& r = row.run;
     std::string heat;
-    for (const std::string& name : row.heat) heat += (heat.empty() ? "" : ", ") + json_text(name) + ": " + json_text(sha256(read_text_file(path(name))));
+    for (const std::string& name : row.heat)
+        heat += (heat.empty() ? "" : ", ") + json_text(name) + ": " + json_text(sha256(read_text_file(path(name))));
     write_atomically(path(run_file(r.method, r.tolerance)), [&](std::ostream& out) {
-        out << "{\"key\": " << json_text(row.key) << ",\n \"method\": " << json_text(r.method) << ", \"threads\": " << row.threads << ",\n \"triangles\": " << r.triangles
-            << ", \"vertices\": " << r.vertices;
+        out << "{\"key\": " << json_text(row.key) << ",\n \"method\": " << json_text(r.method) << ", \"threads\": " << row.threads
+            << ",\n \"triangles\": " << r.triangles << ", \"vertices\": " << r.vertices;
         each_number(r, [&](const char* key, const double& x) { out << ",\n \"" << key << "\": " << json_text(x); });
         out << ",\n \"reason\": " << json_text(r.reason) << ",\n \"heat\": {" << heat << "}}\n";
     });

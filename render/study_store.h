@@ -20,7 +20,8 @@ public:
     static std::string run_file(const std::string& method, double tolerance);
     /// The run of an earlier study with this key, and with its pictures where they are wanted; nothing when there is none. `note` then
     /// says why a file that is there does not count.
-    std::optional<StudyRow> find(const std::string& method, double tolerance, const std::string& key, bool pictures, std::string& note) const;
+    std::optional<StudyRow> find(const std::string& method, double tolerance, const std::string& key, bool pictures,
+                                 std::string& note) const;
     /// Pictures have to be written before.
     void save(const StudyRow& row) const;
 

@@ -3,27 +3,19 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
-#include <ostream>
 
 #include "commands/output.h"
 #include "commands/selection.h"
 #include "error.h"
 #include "heat_map.h"
-#include "io/atomic_file.h"
 #include "json.h"
-#include "json_text.h"
 #include "progress.h"
 #include "provenance.h"
 #include "sha256.h"
-#include "study_page.h"
-#include "study_plots.h"
-#include "study_store.h"
+#include "study_output.h"
 #include "suggest.h"
-#include "text_cairo.h"
 
 namespace isoparm {
 namespace {
@@ -54,21 +46,6 @@ and program are the same. Files there that do not are made again, with a note. N
 
 constexpr int kHeatWidth = 1000, kHeatHeight = 750;
 
-struct Study {
-    std::string folder;
-    Scene scene;
-    Composite patches;
-    double diagonal = 0;
-    std::vector<std::string> methods;
-    std::vector<double> tolerances;  // falling
-    std::size_t max_triangles = 4'000'000;
-    int threads = 1;
-    bool quiet = false, reproducible = false;
-    std::string scene_hash, geometry_hash, options;
-
-    double heat_tolerance() const { return tolerances[(tolerances.size() - 1) / 2]; }
-};
-
 std::vector<std::string> parts_of(const std::string& list) {
     std::vector<std::string> parts;
     for (std::size_t from = 0; from <= list.size();) {
@@ -85,7 +62,8 @@ std::vector<std::string> chosen_methods(const Options& options) {
     const auto list = options.value("--methods");
     if (!list) return names;
     for (const std::string& name : parts_of(*list)) {
-        if (!find_study_method(name)) options.fail("--methods: found " + quoted(name) + ", expected one of: " + listed(names) + did_you_mean(name, names));
+        if (!find_study_method(name))
+            options.fail("--methods: found " + quoted(name) + ", expected one of: " + listed(names) + did_you_mean(name, names));
         if (std::find(chosen.begin(), chosen.end(), name) == chosen.end()) chosen.push_back(name);
     }
     return chosen;
@@ -99,7 +77,9 @@ std::vector<double> chosen_tolerances(const Options& options, double diagonal) {
                 try {
                     return parse_tolerance(text);
                 } catch (const Error&) {
-                    options.fail("--tolerances: found " + quoted(text) + " in the list, expected positive numbers, as 1e-2,1e-3 (scene units) or 1e-2rel,1e-3rel (of the bounding-box diagonal)");
+                    options.fail("--tolerances: found " + quoted(text) +
+                                 " in the list, expected positive numbers, as 1e-2,1e-3 (scene units) or 1e-2rel,1e-3rel (of the "
+                                 "bounding-box diagonal)");
                 }
             }();
             chosen.push_back(absolute_tolerance(t, diagonal, options));
@@ -132,7 +112,7 @@ std::string geometry_of(const Composite& patches) {
 }
 
 /// Names that the study writes at the end must be free, or another study's.
-void check_folder(const Study& study, const StudyStore& store, const Options& options) {
+void check_folder(const StudyStore& store, const Options& options) {
     std::vector<NamedFile> outputs;
     for (const char* name : {"study.json", "study.csv", "index.html"}) outputs.push_back({"-o", store.path(name)});
     check_outputs(options, outputs, {{"SCENE", options.scene_path()}});
@@ -143,7 +123,8 @@ void check_folder(const Study& study, const StudyStore& store, const Options& op
     } catch (const Error&) {
     }
     for (const NamedFile& o : outputs)
-        if (!ours && std::filesystem::exists(o.path)) throw Error(ErrorKind::io, o.path + ": found a file that is not of a study, expected none; choose another folder for -o (" + study.folder + ")");
+        if (!ours && std::filesystem::exists(o.path))
+            throw Error(ErrorKind::io, o.path + ": found a file that is not of a study, expected none; choose another folder for -o");
 }
 
 class Runner {
@@ -179,21 +160,23 @@ public:
 
 private:
     std::string key(const std::string& method, double tolerance) const {
-        return sha256(program_version() + "\n" + study_.geometry_hash + "\n" + method + "\n" + to_text(tolerance) + "\n" + std::to_string(study_.max_triangles));
+        return sha256(program_version() + "\n" + study_.geometry_hash + "\n" + method + "\n" + to_text(tolerance) + "\n" +
+                      std::to_string(study_.max_triangles));
     }
 
     StudyRow make(const std::string& method, double tolerance, double weight) {
         StudyInput input{study_.patches, tolerance, study_.max_triangles, {}};
         input.progress = [&](double fraction) { bar_((done_ + weight * fraction) / left_); };
         input.progress(0);
-        const StudyResult result = run_study(*find_study_method(method), input);
+        StudyResult result = run_study(*find_study_method(method), input);
         StudyRow row{result.run, key(method, tolerance), study_.threads, {}};
         if (tolerance == study_.heat_tolerance() && result.run.reached) row.heat = draw(result);
         store_.save(row);
         const StudyRun& r = result.run;
         char text[256];
         if (r.reached) {
-            std::snprintf(text, sizeof text, "%s at %.3g: %zu triangles, certified error %.3g, %.2f x optimum, %.2f s", method.c_str(), tolerance, r.triangles, r.certified_error, r.ratio(), r.seconds);
+            std::snprintf(text, sizeof text, "%s at %.3g: %zu triangles, certified error %.3g, %.2f x optimum, %.2f s", method.c_str(),
+                          tolerance, r.triangles, r.certified_error, r.ratio(), r.seconds);
             say(text);
         } else {
             say(method + ": " + r.reason);
@@ -201,16 +184,19 @@ private:
         return row;
     }
 
-    std::vector<std::string> draw(const StudyResult& result) const {
+    std::vector<std::string> draw(StudyResult& result) const {
         const StudyRun& r = result.run;
+        sharpen_bounds(study_.patches, result);
         std::vector<std::string> names;
         for (const bool certified : {true, false}) {
             const std::string what = certified ? "certified" : "sampled";
             char title[160];
-            std::snprintf(title, sizeof title, "%s: %s error at tolerance %.3g, %zu triangles", r.method.c_str(), what.c_str(), r.tolerance, r.triangles);
+            std::snprintf(title, sizeof title, "%s: %s error at tolerance %.3g, %zu triangles", r.method.c_str(), what.c_str(), r.tolerance,
+                          r.triangles);
             const HeatMap map{result.mesh, certified ? result.certified : result.sampled, r.tolerance, title, what + " error / tolerance"};
             names.push_back("heat/" + r.method + "-" + what + ".png");
-            write_image(store_.path(names.back()), draw_heat_map(map, study_.scene.camera, kHeatWidth, kHeatHeight), {{"Software", "isoparm " + program_version()}, {"Title", title}});
+            write_image(store_.path(names.back()), draw_heat_map(map, study_.scene.camera, kHeatWidth, kHeatHeight),
+                        {{"Software", "isoparm " + program_version()}, {"Title", title}});
         }
         return names;
     }
@@ -225,69 +211,17 @@ private:
     double left_ = 0, done_ = 0;
 };
 
-using Facts = std::vector<std::pair<std::string, std::string>>;
-
-Facts provenance_of(const Study& study) {
-    Facts facts = {{"program", "isoparm " + program_version()},
-                   {"compiler", compiler_name()},
-                   {"machine", machine_line()},
-                   {"threads", std::to_string(study.threads)},
-                   {"scene", std::filesystem::path(study.scene.path).filename().string()},
-                   {"scene sha256", study.scene_hash},
-                   {"surfaces sha256", study.geometry_hash},
-                   {"options", study.options},
-                   {"max_triangles", std::to_string(study.max_triangles)},
-                   {"diagonal", to_text(study.diagonal)}};
-    if (!study.reproducible) facts.push_back({"date", date_line()});
-    return facts;
-}
-
-std::string order_json(const std::optional<FittedOrder>& o) { return o ? "{\"order\": " + json_text(o->order) + ", \"points\": " + std::to_string(o->points) + "}" : "null"; }
-
-void write_json(std::ostream& out, const Study& study, const Facts& facts, const std::vector<StudyRow>& rows) {
-    out << "{\"isoparm_study\": 1,\n \"title\": " << json_text(study.scene.title) << ",\n \"provenance\": {";
-    for (std::size_t i = 0; i < facts.size(); ++i) out << (i ? ",\n  " : "\n  ") << json_text(facts[i].first) << ": " << json_text(facts[i].second);
-    out << "},\n \"columns\": {";
-    bool first = true;
-    for (const StudyColumn& c : study_columns()) {
-        out << (first ? "\n  " : ",\n  ") << json_text(std::string(c.name)) << ": {\"unit\": " << json_text(std::string(c.unit)) << ", \"meaning\": " << json_text(std::string(c.meaning)) << "}";
-        first = false;
-    }
-    out << "},\n \"methods\": [";
-    for (std::size_t i = 0; i < study.methods.size(); ++i) {
-        const MethodOrders o = fitted_orders(rows, study.methods[i]);
-        out << (i ? ",\n  " : "\n  ") << "{\"name\": " << json_text(study.methods[i]) << ", \"summary\": " << json_text(std::string(find_study_method(study.methods[i])->summary))
-            << ",\n   \"order\": {\"certified\": " << order_json(o.certified) << ", \"sampled\": " << order_json(o.sampled) << "}}";
-    }
-    out << "],\n \"runs\": [";
-    for (std::size_t i = 0; i < rows.size(); ++i) out << (i ? ",\n  " : "\n  ") << row_json(rows, i);
-    out << "]}\n";
-}
-
-void write_results(const Study& study, const StudyStore& store, const std::vector<StudyRow>& rows) {
-    const auto write = [&](const std::string& name, const std::string& bytes) { write_atomically(store.path(name), [&](std::ostream& out) { out << bytes; }); };
-    StudyFacts facts{study.scene.title.empty() ? std::filesystem::path(study.scene.path).stem().string() : study.scene.title, provenance_of(study), study.methods, study.heat_tolerance()};
-    write_atomically(store.path("study.json"), [&](std::ostream& out) { write_json(out, study, facts.provenance, rows); });
-    write_atomically(store.path("study.csv"), [&](std::ostream& out) { write_csv(out, rows); });
-    std::vector<std::string> svg;
-    for (const StudyPlot& p : study_plots(rows, study.methods)) {
-        const Drawing drawing = draw_plot(p.plot, kPlotWidth, kPlotHeight);
-        svg.push_back(vector_file(drawing, kPlotWidth, kPlotHeight, VectorFormat::svg, p.plot.title));
-        write(p.file + ".svg", svg.back());
-        write(p.file + ".pdf", vector_file(drawing, kPlotWidth, kPlotHeight, VectorFormat::pdf, p.plot.title));
-    }
-    std::vector<std::pair<std::string, std::string>> png;
-    for (const StudyRow& r : rows)
-        if (r.run.tolerance == study.heat_tolerance())
-            for (const std::string& name : r.heat) png.push_back({name, read_text_file(store.path(name))});
-    write("index.html", study_page(facts, rows, svg, png));
-}
-
 int run(const std::vector<std::string>& arguments) {
     const Options options("study", arguments,
-                          {{"-o", true}, {"--surface", true}, {"--tolerances", true}, {"--methods", true}, {"--max-triangles", true}, {"--set", true}, {"--reproducible", false}});
+                          {{"-o", true},
+                           {"--surface", true},
+                           {"--tolerances", true},
+                           {"--methods", true},
+                           {"--max-triangles", true},
+                           {"--set", true},
+                           {"--reproducible", false}});
     Study study;
-    study.folder = options.required("-o", "the folder to write to");
+    const std::string folder = options.required("-o", "the folder to write to");
     study.methods = chosen_methods(options);
     study.quiet = options.quiet();
     study.reproducible = options.has("--reproducible");
@@ -296,15 +230,18 @@ int run(const std::vector<std::string>& arguments) {
     study.patches = select_patches(study.scene, options).patches;
     study.diagonal = finite_diagonal(study.scene, bounding_box(study.patches));
     study.tolerances = chosen_tolerances(options, study.diagonal);
-    if (!(study.tolerances.back() > 0)) throw_input(study.scene.place + ": found surfaces of size 0, expected some that a relative tolerance can be taken of");
-    study.threads = std::min(int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)), tbb::this_task_arena::max_concurrency());
+    if (!(study.tolerances.back() > 0))
+        throw_input(study.scene.place + ": found surfaces of size 0, expected some that a relative tolerance can be taken of");
+    study.threads = std::min(int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
+                             tbb::this_task_arena::max_concurrency());
     study.scene_hash = sha256(read_text_file(study.scene.path));
     study.geometry_hash = geometry_of(study.patches);
     for (const char* name : {"--surface", "--tolerances", "--methods", "--set"})
-        for (const std::string& value : options.values(name)) study.options += (study.options.empty() ? "" : " ") + std::string(name) + " " + value;
+        for (const std::string& value : options.values(name))
+            study.options += (study.options.empty() ? "" : " ") + std::string(name) + " " + value;
 
-    const StudyStore store(study.folder);
-    check_folder(study, store, options);
+    const StudyStore store(folder);
+    check_folder(store, options);
     const std::vector<StudyRow> rows = Runner(study, store).run();
     write_results(study, store, rows);
     if (!study.quiet) std::fprintf(stderr, "%s: %zu runs\n", store.path("index.html").c_str(), rows.size());
