@@ -42,16 +42,8 @@ Rims::Rims(const Composite& surface, const Topology& topology, const std::vector
 std::vector<RimVertex> Rims::cut(std::uint32_t r) const {
     const Rim& rim = topology_.rims[r];
     std::vector<RimVertex> all{end_of(rim, 0)};
-    if (rim.uses.size() == 2 && !rim.uses[1].affine && inside(rim.uses[0]).size() == inside(rim.uses[1]).size()) {
-        // Other parameters, but as many vertices: one to one.
-        for (const double t : inside(rim.uses[0])) {
-            all.push_back(both(rim, 0, t));
-            all.back().lattice[1] = true;
-        }
-    } else {
-        for (int u = 0; u < int(rim.uses.size()); ++u)
-            for (const double t : inside(rim.uses[u])) all.push_back(both(rim, u, t));
-    }
+    for (int u = 0; u < int(rim.uses.size()); ++u)
+        for (const double t : inside(rim.uses[u])) all.push_back(both(rim, u, t));
     all.push_back(end_of(rim, 1));
     std::stable_sort(all.begin(), all.end(), [](const RimVertex& a, const RimVertex& b) { return a.f < b.f; });
     std::vector<RimVertex> kept;

@@ -235,6 +235,8 @@ std::string vector_file(const Drawing& drawing, double width, double height, Vec
     check(c);
     cairo_surface_finish(surface.get());
     if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::runtime_error("Cairo failed to write a drawing");
+    // Cairo numbers all its surfaces one after the other and writes that down.
+    if (const auto at = pdf ? std::string::npos : bytes.find(" id=\"surface"); at != std::string::npos) bytes.erase(at, bytes.find('"', at + 5) + 1 - at);
     return bytes;
 }
 

@@ -194,7 +194,7 @@ TEST(StudyProgram, RefusesWhatItCannotDo) {
         EXPECT_NE(result.err.find(message), std::string::npos) << more << "\n" << result.err;
     };
     expect("", 64, "-o is missing");
-    expect("-o " + t / "a --methods fsat", 64, "did you mean \"fast\"?");
+    expect("-o " + t / "a --methods fasst", 64, "did you mean \"fast\"?");
     expect("-o " + t / "a --tolerances 1e-2,,1e-3", 64, "--tolerances: found \"\" in the list");
     expect("-o " + t / "a --tolerances 1px", 64, "a tolerance in pixels needs a picture");
     expect("-o " + t / "a --tolerances -1", 64, "--tolerances: found \"-1\"");
@@ -260,7 +260,7 @@ TEST(Plot, TheSameDrawingGivesTheSameBytesAndStaysOnItsPaper) {
     plot.series = {s};
     const Drawing drawing = draw_plot(plot, 400, 300);
     for (const auto format : {VectorFormat::svg, VectorFormat::pdf})
-        EXPECT_EQ(vector_file(drawing, 400, 300, format, "t"), vector_file(drawing, 400, 300, format, "t"));
+        EXPECT_TRUE(vector_file(drawing, 400, 300, format, "t") == vector_file(drawing, 400, 300, format, "t"));
     EXPECT_EQ(vector_file(drawing, 400, 300, VectorFormat::pdf, "t").find("CreationDate"), std::string::npos);
     for (const DrawingItem& item : drawing)
         if (const auto* text = std::get_if<Text>(&item.shape)) {
