@@ -13,6 +13,7 @@ struct Study {
     std::vector<std::string> methods;
     std::vector<double> tolerances;  // falling
     std::size_t max_triangles = 4'000'000;
+    std::array<int, 2> picture_size{1000, 750};
     int threads = 1;
     bool quiet = false, reproducible = false;
     std::string scene_hash, geometry_hash;  // sha256 of the file, and of the surfaces

@@ -30,6 +30,16 @@ std::string text(const Json& object, const char* key) {
     return value.string();
 }
 
+/// Width and height, from the header chunk.
+std::array<int, 2> png_size(const std::string& bytes) {
+    const auto at = [&](std::size_t i) {
+        int n = 0;
+        for (std::size_t k = i; k < i + 4; ++k) n = n << 8 | (k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0);
+        return n;
+    };
+    return {at(16), at(20)};
+}
+
 /// Members of the file and of a run, in one place for reading and writing.
 template <class Run, class F> void each_number(Run& r, F f) {
     f("tolerance", r.tolerance), f("certified_error", r.certified_error), f("certified_parametric", r.certified_parametric),
@@ -73,8 +83,8 @@ std::string StudyStore::run_file(const std::string& method, double tolerance) {
     return "runs/" + method + "-" + to_text(tolerance) + ".json";
 }
 
-std::optional<StudyRow> StudyStore::find(const std::string& method, double tolerance, const std::string& key, bool pictures,
-                                         std::string& note) const {
+std::optional<StudyRow> StudyStore::find(const std::string& method, double tolerance, const std::string& key,
+                                         const std::array<int, 2>& pictures, std::string& note) const {
     const std::string file = path(run_file(method, tolerance));
     note.clear();
     if (!fs::exists(file)) return {};
@@ -89,12 +99,13 @@ std::optional<StudyRow> StudyStore::find(const std::string& method, double toler
         for (const Json& picture : heat.children()) {
             const std::string name = picture.key();
             row.heat.push_back(name);
-            if (!fs::exists(path(name)) || sha256(read_text_file(path(name))) != picture.string()) {
-                note = path(name) + ": missing or changed; its run is made again";
+            const std::string bytes = fs::exists(path(name)) ? read_text_file(path(name)) : "";
+            if (sha256(bytes) != picture.string() || (pictures[0] > 0 && png_size(bytes) != pictures)) {
+                note = path(name) + ": missing, changed, or of another size; its run is made again";
                 return {};
             }
         }
-        if (pictures && row.run.reached && row.heat.empty()) {
+        if (pictures[0] > 0 && row.run.reached && row.heat.empty()) {
             note = file + ": has no pictures of the error, which are wanted now; its run is made again";
             return {};
         }

@@ -24,7 +24,7 @@ using test::read_all, test::write_all;
 
 std::string scene() { return test::source_folder() + "/scenes/coons.json"; }
 std::string arguments(const std::string& folder) {
-    return "study '" + scene() + "' -o '" + folder + "' --methods uniform,fast --tolerances 3e-2rel,1e-2rel,3e-3rel";
+    return "study '" + scene() + "' -o '" + folder + "' --methods uniform,fast --tolerances 3e-2rel,1e-2rel,3e-3rel --size 120x90";
 }
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -155,7 +155,10 @@ TEST(StudyProgram, GoesOnWhereItWasAndMakesDamagedRunsAgain) {
     write_all(folder + "/heat/fast-sampled.png", "no picture");
     const auto picture = test::run(arguments(folder));
     EXPECT_EQ(made(picture), 1u) << picture.err;
-    EXPECT_NE(picture.err.find("fast-sampled.png: missing or changed"), std::string::npos) << picture.err;
+    EXPECT_NE(picture.err.find("fast-sampled.png: missing, changed, or of another size"), std::string::npos) << picture.err;
+
+    const auto larger = test::run(arguments(folder) + " --size 160x120");
+    EXPECT_EQ(made(larger), 2u) << larger.err;
 
     write_all(folder + "/runs/mine.json", "mine");
     write_all(folder + "/notes.txt", "mine");
@@ -167,8 +170,9 @@ TEST(StudyProgram, GoesOnWhereItWasAndMakesDamagedRunsAgain) {
 
 TEST(StudyProgram, WhatIsNotReachedIsRecordedAndTheStudyGoesOn) {
     const test::TemporaryFolder t;
-    const auto result = test::run("study '" + scene() + "' -o " + t / "out" +
-                                  " --methods uniform,quadtree,fast --tolerances 1e-2,1e-7 --max-triangles 5000 --reproducible");
+    const auto result =
+        test::run("study '" + scene() + "' -o " + t / "out" +
+                  " --methods uniform,quadtree,fast --tolerances 1e-2,1e-7 --max-triangles 5000 --reproducible --size 120x90");
     ASSERT_EQ(result.code, 0) << result.err;
     const Json json = Json::parse(read_all(t / "out/study.json"), "study.json");
     EXPECT_FALSE(json.at("provenance", "").find("date"));
@@ -199,6 +203,7 @@ TEST(StudyProgram, RefusesWhatItCannotDo) {
     expect("-o " + t / "a --tolerances 1px", 64, "a tolerance in pixels needs a picture");
     expect("-o " + t / "a --tolerances -1", 64, "--tolerances: found \"-1\"");
     expect("-o " + t / "a --max-triangles 0", 64, "--max-triangles");
+    expect("-o " + t / "a --size 3", 64, "--size: found \"3\"");
     EXPECT_FALSE(fs::exists(t / "a"));
     write_all(t / "file", "");
     expect("-o " + t / "file", 4, "file");
@@ -207,10 +212,16 @@ TEST(StudyProgram, RefusesWhatItCannotDo) {
     write_all(t / "taken/index.html", "mine");
     expect("-o " + t / "taken", 4, "not of a study");
     EXPECT_EQ(read_all(t / "taken/index.html"), "mine");
+}
+
+TEST(StudyProgram, RefusesAFolderThatItMayNotWriteTo) {
     if (geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+    const test::TemporaryFolder t;
     fs::create_directory(t / "locked");
     fs::permissions(t / "locked", fs::perms::owner_read | fs::perms::owner_exec);
-    expect("-o " + t / "locked", 4, "locked");
+    const auto result = test::run("study '" + scene() + "' -o " + t / "locked");
+    EXPECT_EQ(result.code, 4);
+    EXPECT_NE(result.err.find("locked"), std::string::npos) << result.err;
 }
 
 TEST(StudyProgram, ThePageShowsItsFiguresInABrowser) {
@@ -219,7 +230,9 @@ TEST(StudyProgram, ThePageShowsItsFiguresInABrowser) {
         if (browser.empty() && std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0) browser = name;
     if (browser.empty()) GTEST_SKIP() << "there is no chromium";
     const test::TemporaryFolder t;
-    ASSERT_EQ(test::run("study '" + scene() + "' -o " + t / "out" + " --methods fast --tolerances 3e-2rel,1e-2rel --quiet").code, 0);
+    ASSERT_EQ(
+        test::run("study '" + scene() + "' -o " + t / "out" + " --methods fast --tolerances 3e-2rel,1e-2rel --quiet --size 400x300").code,
+        0);
     const std::string command =
         "timeout 60 " + browser +
         " --headless --no-sandbox --disable-gpu --host-resolver-rules='MAP * ~NOTFOUND' --window-size=1200,4000 --dump-dom 'file://" +

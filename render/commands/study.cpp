@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "commands/output.h"
+#include "commands/render_options.h"
 #include "commands/selection.h"
 #include "error.h"
 #include "heat_map.h"
@@ -39,12 +40,11 @@ and program are the same. Files there that do not are made again, with a note. N
                   fast        isoparm tessellate
                   parametric  isoparm tessellate --measure parametric
 --max-triangles N 4000000: a run that would need more is recorded as not reached, and the study goes on
+--size WxH        of the pictures, 1000x750
 --reproducible    no date in study.json and on the page (times are measured all the same)
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
 --quiet           no messages; --threads N  at most N threads: the meshes are the same for every N
 )";
-
-constexpr int kHeatWidth = 1000, kHeatHeight = 750;
 
 std::vector<std::string> parts_of(const std::string& list) {
     std::vector<std::string> parts;
@@ -143,7 +143,9 @@ public:
             for (const double tolerance : study_.tolerances) {
                 Place p{method, tolerance, study_.diagonal / tolerance + 1000, {}};  // about as its triangles
                 std::string note;
-                p.known = store_.find(method, tolerance, key(method, tolerance), tolerance == study_.heat_tolerance(), note);
+                const bool pictures = tolerance == study_.heat_tolerance();
+                p.known =
+                    store_.find(method, tolerance, key(method, tolerance), pictures ? study_.picture_size : std::array<int, 2>{}, note);
                 if (!note.empty()) say("note: " + note);
                 kept += p.known.has_value();
                 if (!p.known) left_ += p.weight;
@@ -195,7 +197,7 @@ private:
                           r.triangles);
             const HeatMap map{result.mesh, certified ? result.certified : result.sampled, r.tolerance, title, what + " error / tolerance"};
             names.push_back("heat/" + r.method + "-" + what + ".png");
-            write_image(store_.path(names.back()), draw_heat_map(map, study_.scene.camera, kHeatWidth, kHeatHeight),
+            write_image(store_.path(names.back()), draw_heat_map(map, study_.scene.camera, study_.picture_size[0], study_.picture_size[1]),
                         {{"Software", "isoparm " + program_version()}, {"Title", title}});
         }
         return names;
@@ -218,6 +220,7 @@ int run(const std::vector<std::string>& arguments) {
                            {"--tolerances", true},
                            {"--methods", true},
                            {"--max-triangles", true},
+                           {"--size", true},
                            {"--set", true},
                            {"--reproducible", false}});
     Study study;
@@ -226,6 +229,10 @@ int run(const std::vector<std::string>& arguments) {
     study.quiet = options.quiet();
     study.reproducible = options.has("--reproducible");
     if (const auto most = options.integer("--max-triangles", 1, 200'000'000)) study.max_triangles = std::size_t(*most);
+    if (options.has("--size")) {
+        const RenderOptions pictures = read_render_options(options);
+        study.picture_size = {std::max(pictures.width, 64), std::max(pictures.height, 48)};
+    }
     study.scene = options.scene();
     study.patches = select_patches(study.scene, options).patches;
     study.diagonal = finite_diagonal(study.scene, bounding_box(study.patches));
