@@ -17,6 +17,8 @@ struct MeshPart {
     std::vector<Vec2> uv;                               // parameters of each corner, on this patch
     std::vector<std::uint32_t> vertex;                  // mesh vertex of each corner
     std::vector<std::array<std::uint32_t, 3>> triangles;  // corners, counter-clockwise about the outward side
+    /// Corners, counter-clockwise in the domain, of triangles that would name a mesh vertex twice: segments, edges of other triangles.
+    std::vector<std::array<std::uint32_t, 3>> left_out;
     bool flipped = false;                               // triangles wind against S_u x S_v
     double certified_error = 0;
 };

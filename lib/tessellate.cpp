@@ -20,10 +20,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Edges nearer than this are one. The certificate holds whatever it is: vertices are charged their distance from every
-/// patch that uses them. A sixteenth of the tolerance keeps that charge affordable.
-double join_tolerance(double tolerance, double diagonal) { return std::min(1e-6 * diagonal, tolerance / 16); }
-
 [[noreturn]] void give_up(const Refinement& refinement, const TessellationOptions& options, double needed) {
     std::ostringstream text;
     text.precision(6);
@@ -89,7 +85,10 @@ Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinemen
         part.flipped = topology.flipped[m];
         part.certified_error = refinement.worst_bound_of(m);
         for (const auto& t : p.triangles) {
-            if (p.left_out(t)) continue;  // a collapsed edge: its two long sides are one mesh edge
+            if (p.left_out(t)) {  // a collapsed edge: its two long sides are one mesh edge
+                part.left_out.push_back(t.corner);
+                continue;
+            }
             if (part.flipped) part.triangles.push_back({t.corner[0], t.corner[2], t.corner[1]});
             else part.triangles.push_back(t.corner);
             for (const auto v : p.vertices(t)) number[v] = 0;
@@ -106,8 +105,27 @@ Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinemen
     return mesh;
 }
 
-/// (0.3849 I+ + 0.2236 I-) / tolerance, I the integrals of sqrt|K| dA = sqrt|LN - M^2| du dv over K > 0 and K < 0, by the
-/// midpoint rule (Fejes Toth; Gruber; Atariah, Rote and Wintraecken 2018).
+/// Upper bounds of angles, in degrees, and the tangent of such a limit, rounded down.
+double degrees_up(double tangent) { return std::atan(tangent) * (180 / M_PI) * (1 + 1e-14); }
+double tangent_down(double degrees) { return std::tan(degrees * (M_PI / 180)) * (1 - 1e-14); }
+
+void report_normals(const Refinement& refinement, Tessellation& result) {
+    double most = 0;
+    for (const PatchMesh& p : refinement.patches())
+        for (const PatchTriangle& t : p.triangles) {
+            if (p.left_out(t)) continue;
+            if (std::isfinite(t.proof.turn)) most = std::max(most, t.proof.turn);
+            else ++result.normals_unproved;
+        }
+    result.normal_deviation = degrees_up(most);
+}
+
+}  // namespace
+
+double join_tolerance(double tolerance, double diagonal) { return std::min(1e-6 * diagonal, tolerance / 16); }
+
+// (0.3849 I+ + 0.2236 I-) / tolerance, I the integrals of sqrt|K| dA = sqrt|LN - M^2| du dv over K > 0 and K < 0, by the
+// midpoint rule (Fejes Toth; Gruber; Atariah, Rote and Wintraecken 2018).
 double optimal_triangles(const Patch& patch, double tolerance) {
     constexpr int n = 32;
     const std::vector<double> us = patch.lines_u(), vs = patch.lines_v();
@@ -134,23 +152,6 @@ double optimal_triangles(const Patch& patch, double tolerance) {
                 }
     return (2 / (3 * std::sqrt(3.0)) * convex + 1 / (2 * std::sqrt(5.0)) * saddle) / tolerance;
 }
-
-/// Upper bounds of angles, in degrees, and the tangent of such a limit, rounded down.
-double degrees_up(double tangent) { return std::atan(tangent) * (180 / M_PI) * (1 + 1e-14); }
-double tangent_down(double degrees) { return std::tan(degrees * (M_PI / 180)) * (1 - 1e-14); }
-
-void report_normals(const Refinement& refinement, Tessellation& result) {
-    double most = 0;
-    for (const PatchMesh& p : refinement.patches())
-        for (const PatchTriangle& t : p.triangles) {
-            if (p.left_out(t)) continue;
-            if (std::isfinite(t.proof.turn)) most = std::max(most, t.proof.turn);
-            else ++result.normals_unproved;
-        }
-    result.normal_deviation = degrees_up(most);
-}
-
-}  // namespace
 
 Tessellation tessellate(const Composite& surface, const TessellationOptions& options) {
     if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) throw_input("found tolerance " + to_text(options.tolerance) + ", expected a positive number");

@@ -44,4 +44,11 @@ struct Tessellation {
 /// Throws Error(budget) that states what was reached and about how many triangles would be needed.
 Tessellation tessellate(const Composite& surface, const TessellationOptions& options);
 
+/// Edges nearer than this are one. The certificate holds whatever it is: vertices are charged their distance from every
+/// patch that uses them. A sixteenth of the tolerance keeps that charge affordable.
+double join_tolerance(double tolerance, double diagonal);
+
+/// The asymptotic optimum of triangles of a patch at a tolerance, their vertices on the surface.
+double optimal_triangles(const Patch& patch, double tolerance);
+
 }  // namespace isoparm

@@ -25,6 +25,7 @@ struct Text {
     double size = 0;  // of the letters: one em
     MathText text;
     double halo = 0;  // width of the white rim about the letters
+    bool turned = false;  // by a quarter: reads upwards
 };
 
 struct DrawingItem {

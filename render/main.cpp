@@ -22,8 +22,9 @@ const Command* const kCommands[] = {
     &render_command,      // a ray-traced picture
     &figures_command,     // all pictures
     &limit_command,       // against OpenSubdiv
+    &study_command,       // how well methods tessellate
 };
-const std::vector<std::string> kNotBuiltYet = {"check", "study", "diff"};
+const std::vector<std::string> kNotBuiltYet = {"check", "diff"};
 
 std::string help() {
     std::string text = "usage: isoparm COMMAND ...\n\nFrom boundary curves to surfaces, to meshes of proved error, to ray-traced pictures.\n\n";
@@ -33,7 +34,7 @@ std::string help() {
         text += "  " + name + c->summary + "\n";
     }
     return text + R"(
-isoparm COMMAND --help tells more; --version prints the version. Not built yet: check, study, diff.
+isoparm COMMAND --help tells more; --version prints the version. Not built yet: check, diff.
 Every command knows --quiet and --threads N (or ISOPARM_THREADS). Results go to stdout, messages to stderr.
 
 Exit codes: 0 success, 1 success with a warning, 2 something could not be proved or failed a check, 3 not comparable,

@@ -1,12 +1,16 @@
 #include "text_cairo.h"
 
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
 #include <pango/pangocairo.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "error.h"
+#include "palette.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -20,7 +24,7 @@ constexpr const char* kFamilies =
 template <auto release> struct Release {
     template <class T> void operator()(T* p) const { release(p); }
 };
-using Surface = std::unique_ptr<cairo_surface_t, Release<cairo_surface_destroy>>;
+using Target = std::unique_ptr<cairo_surface_t, Release<cairo_surface_destroy>>;
 using Context = std::unique_ptr<cairo_t, Release<cairo_destroy>>;
 using Layout = std::unique_ptr<PangoLayout, Release<g_object_unref>>;
 using Font = std::unique_ptr<PangoFontDescription, Release<pango_font_description_free>>;
@@ -92,8 +96,26 @@ TextBox set(cairo_t* c, const MathText& text, double size, double x, double y) {
     return box;
 }
 
+/// The outlines of a text where it stands.
+void set(cairo_t* c, const Text& text) {
+    cairo_save(c);
+    cairo_translate(c, text.at.x, text.at.y);
+    if (text.turned) cairo_rotate(c, -std::numbers::pi / 2);
+    set(c, text.text, text.size, 0, 0);
+    cairo_restore(c);
+}
+
+/// Draws the path as that line is drawn.
+void stroke(cairo_t* c, const Polyline& line) {
+    cairo_set_line_width(c, line.width);
+    cairo_set_line_cap(c, line.round ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+    cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
+    cairo_set_dash(c, line.dash.data(), static_cast<int>(line.dash.size()), 0);
+    cairo_stroke(c);
+}
+
 struct Canvas {
-    Surface surface;
+    Target surface;
     Context context;
     explicit Canvas(int width = 1, int height = 1)
         : surface(cairo_image_surface_create(CAIRO_FORMAT_A8, width, height)), context(cairo_create(surface.get())) {
@@ -144,13 +166,7 @@ Coverage painted_about(const std::vector<Vec2>& points, double rim, int width, i
 }  // namespace
 
 Coverage coverage(const Polyline& line, int width, int height) {
-    return painted_about(line.points, line.width + 1, width, height, [&](cairo_t* c) {
-        cairo_set_line_width(c, line.width);
-        cairo_set_line_cap(c, line.round ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
-        cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
-        if (!line.dash.empty()) cairo_set_dash(c, line.dash.data(), static_cast<int>(line.dash.size()), 0);
-        cairo_stroke(c);
-    });
+    return painted_about(line.points, line.width + 1, width, height, [&](cairo_t* c) { stroke(c, line); });
 }
 
 Coverage coverage(const Filled& area, int width, int height) {
@@ -161,11 +177,12 @@ Coverage coverage(const Filled& area, int width, int height) {
 }
 
 Coverage coverage(const Text& text, double rim, int width, int height) {
-    const TextBox box = text_box(text.text, text.size);
+    TextBox box = text_box(text.text, text.size);
+    if (text.turned) box = {box.top, -box.right, box.bottom, -box.left, 0};
     const double around = rim + 2;
     return painted(text.at.x + box.left - around, text.at.y + box.top - around, text.at.x + box.right + around,
                    text.at.y + box.bottom + around, width, height, [&](cairo_t* c) {
-                       set(c, text.text, text.size, text.at.x, text.at.y);
+                       set(c, text);
                        if (rim > 0) {
                            cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
                            cairo_set_line_width(c, 2 * rim);
@@ -173,6 +190,54 @@ Coverage coverage(const Text& text, double rim, int width, int height) {
                        }
                        cairo_fill(c);
                    });
+}
+
+namespace {
+
+cairo_status_t append(void* to, const unsigned char* data, unsigned int length) {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), length);
+    return CAIRO_STATUS_SUCCESS;
+}
+
+void put_shape(cairo_t* c, const Polyline& line) {
+    for (const Vec2& p : line.points) cairo_line_to(c, p.x, p.y);
+    stroke(c, line);
+}
+void put_shape(cairo_t* c, const Filled& area) {
+    for (const Vec2& p : area.outline) cairo_line_to(c, p.x, p.y);
+    cairo_close_path(c);
+    cairo_fill(c);
+}
+void put_shape(cairo_t* c, const Text& text) {
+    set(c, text);
+    cairo_fill(c);
+}
+
+}  // namespace
+
+std::string vector_file(const Drawing& drawing, double width, double height, VectorFormat format, const std::string& title) {
+    std::string bytes;
+    const bool pdf = format == VectorFormat::pdf;
+    const Target surface(pdf ? cairo_pdf_surface_create_for_stream(append, &bytes, width, height)
+                              : cairo_svg_surface_create_for_stream(append, &bytes, width, height));
+    if (pdf) {
+        cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, title.c_str());
+        cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
+    }
+    const Context context(cairo_create(surface.get()));
+    cairo_t* c = context.get();
+    cairo_set_source_rgb(c, 1, 1, 1);
+    cairo_paint(c);
+    for (const DrawingItem& item : drawing) {
+        cairo_set_source_rgba(c, srgb_from_linear(item.color.x), srgb_from_linear(item.color.y), srgb_from_linear(item.color.z), item.opacity);
+        std::visit([&](const auto& shape) { put_shape(c, shape); }, item.shape);
+    }
+    check(c);
+    cairo_surface_finish(surface.get());
+    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::runtime_error("Cairo failed to write a drawing");
+    // Cairo numbers all its surfaces one after the other and writes that down.
+    if (const auto at = pdf ? std::string::npos : bytes.find(" id=\"surface"); at != std::string::npos) bytes.erase(at, bytes.find('"', at + 5) + 1 - at);
+    return bytes;
 }
 
 TextBox text_box(const MathText& text, double size) {

@@ -1,8 +1,9 @@
-// text_cairo.h -- how much of each pixel a line, an area or a text covers. text_cairo.cpp is the only file that
+// text_cairo.h -- how much of each pixel a line, an area or a text covers, and drawings as SVG or PDF. text_cairo.cpp is the only file that
 // includes Cairo and Pango; linking them costs 8 ms at the start of the program, loading them when needed would save
 // less than it complicates.
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "drawing.h"
@@ -25,5 +26,10 @@ struct TextBox {
     double left = 0, top = 0, right = 0, bottom = 0, advance = 0;
 };
 TextBox text_box(const MathText& text, double size);
+
+/// The drawing on white, width x height of its pixels, which are points in the PDF. Letters become outlines, so that it looks alike
+/// everywhere. No date in it: the same drawing gives the same bytes. Throws Error(io) when no font has the letters.
+enum class VectorFormat { svg, pdf };
+std::string vector_file(const Drawing& drawing, double width, double height, VectorFormat format, const std::string& title);
 
 }  // namespace isoparm
