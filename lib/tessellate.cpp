@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "error.h"
+#include "optimize.h"
 #include "refine.h"
 #include "topology.h"
 
@@ -146,6 +147,10 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     const Topology topology = find_topology(surface, join_tolerance(options.tolerance, diagonal));
     Refinement refinement(surface, topology, options.tolerance, options.measure, double(options.max_triangles));
     refine(refinement, options);
+    if (options.quality == Quality::optimal) {
+        optimize(refinement, surface, topology, options.tolerance, options.measure, options.progress);
+        refine(refinement, options);
+    }
 
     Tessellation result;
     result.tolerance = options.tolerance;

@@ -11,11 +11,15 @@
 
 namespace isoparm {
 
+/// fast: bisection only. optimal: then vertices move, edges flip and vertices are removed, under the same certificate.
+enum class Quality { fast, optimal };
+
 struct TessellationOptions {
     double tolerance = 0;                    // scene units, absolute, > 0: largest distance between mesh and surface, both ways
     Measure measure = Measure::parametric;   // geometric: the distance of the two sets; parametric: of points at equal parameters, never less
     std::size_t max_triangles = 20'000'000;  // budget; beyond it tessellate() throws Error(budget)
     std::function<void(double)> progress;    // called from the calling thread with a fraction in [0,1]; may be empty
+    Quality quality = Quality::fast;
 };
 
 struct SurfaceReport {
