@@ -37,7 +37,18 @@ std::size_t round_of(Worker& worker, const std::vector<Site>& sites, const FreeC
     }
     std::sort(order.begin(), order.end());
     std::size_t removed = 0;
-    for (const auto& [cost, i] : order) removed += worker.remove(sites[i], most_cost > 1);
+    const bool dump = getenv("OPT_DUMP") && sites.size() && sites[0].patch == std::uint32_t(atoi(getenv("OPT_DUMP")));
+    if (dump) {
+        int hist[30] = {};
+        for (const Site& x : sites) if (all.patches()[x.patch].corners()[x.corner].triangle != kNone) hist[int(std::min(2.9, worker.cost_of_removal(x)) * 10)]++;
+        for (int k = 0; k < 30; ++k) fprintf(stderr, " %d:%d", k, hist[k]);
+        fprintf(stderr, "\n");
+    }
+    for (const auto& [cost, i] : order) {
+        const bool good = worker.remove(sites[i], most_cost > 1);
+        removed += good;
+        if (dump && !good) {const auto&c=all.patches()[sites[i].patch].corners()[sites[i].corner]; fprintf(stderr, "fail cost %.3f at %g %g worst %g kind %d\n", cost, c.uv.x, c.uv.y, worker.last_worst, worker.last_kind);}
+    }
     return removed;
 }
 
@@ -85,7 +96,31 @@ void optimize(Refinement& refinement, const Composite& surface, const Topology& 
                 se += t.error; sn += t.own.normal; hist[std::min(11, int(t.error * 10))]++; histn[std::min(11, int(t.own.normal * 10))]++;
             }
         fprintf(stderr, "n %ld nonquiet %ld rim %ld: rim mean error %.3f normal %.3f; inner mean error %.3f normal %.3f\n", n, nq, rim, ser / rim, snr / rim, se / (n - rim - nq), sn / (n - nq - rim));
-        for (int k = 0; k < 12; ++k) fprintf(stderr, "%d: error %ld normal %ld nonquiet %ld\n", k, hist[k], histn[k], hq[k]);
+        if (getenv("OPT_DUMP")) {
+            const auto& p = all.patches()[std::size_t(atoi(getenv("OPT_DUMP")))];
+            FILE* f = fopen("/tmp/w/proto/dump.txt", "w");
+            for (auto& t : p.triangles()) if (t.live) {
+                fprintf(f, "%d %d %g %g %g %g %g", t.left_out, t.own.quiet, t.error, t.own.normal, t.own.across[0], t.own.across[1], t.own.across[2]);
+                for (auto c : t.corner) fprintf(f, " %.6f %.6f %d", p.corners()[c].uv.x, p.corners()[c].uv.y, int(p.corners()[c].freedom));
+                fprintf(f, "\n");
+            }
+            fclose(f);
+        }
+        struct C { long n = 0; double e = 0, h = 0, low = 0; } cat[4];
+        std::size_t m = 0;
+        for (auto& p : all.patches()) {
+            C per; long q = 0;
+            for (auto& t : p.triangles()) {
+                if (!t.live || t.left_out) continue;
+                int touch = 0;
+                for (auto c : t.corner) touch += p.corners()[c].freedom == Freedom::rim || p.corners()[c].freedom == Freedom::fixed;
+                for (C* c : {&cat[touch], &per}) c->n++, c->e += t.error, c->h += t.own.least(), c->low += t.error < 0.5;
+                q += !t.own.quiet;
+            }
+            fprintf(stderr, "patch %zu: %ld e %.3f h %.3f low %.0f nonquiet %ld\n", m++, per.n, per.e / per.n, per.h / per.n, per.low, q);
+        }
+        for (int k = 0; k < 4; ++k) fprintf(stderr, "%d rim corners: n %ld e %.3f h %.3f low %.0f\n", k, cat[k].n, cat[k].e / cat[k].n, cat[k].h / cat[k].n, cat[k].low);
+        for (int k = 0; k < 0; ++k) fprintf(stderr, "%d: error %ld normal %ld nonquiet %ld\n", k, hist[k], histn[k], hq[k]);
     }
     all.write(refinement);
 }

@@ -53,7 +53,8 @@ Estimate estimate(const SecondDerivatives& s, const Places& t) {
         return Vec2{size[0] * ru + size[1] * rv + suv * aspect, size[2] * ru + size[3] * rv + suv / aspect};
     };
     const Vec2 qn = diagonal(along), qs = diagonal(all);
-    double plus[3], minus[3], lengths[3];
+    double plus[3], minus[3], lengths[3], bends[3], strays[3];
+    Point forms[3], inward[3];
     for (int k = 0; k < 3; ++k) lengths[k] = length(sides[k]);
     result.quiet = true;
     for (int k = 0; k < 3; ++k) {
@@ -61,11 +62,30 @@ Estimate estimate(const SecondDerivatives& s, const Places& t) {
         const Point b = eu * eu * h[0] + 2 * eu * ev * h[1] + ev * ev * h[2];
         const double bn = dot(n, b), q = qn.x * eu * eu + qn.y * ev * ev, qb = qs.x * eu * eu + qs.y * ev * ev;
         plus[k] = q + bn, minus[k] = q - bn;
-        const double across = std::fabs(dot(cross(n, sides[k]), b)) / lengths[k] + qb, bend = length(b) + qb;
+        forms[k] = b, strays[k] = qb, inward[k] = cross(n, sides[k]) / lengths[k];
+        const double across = std::fabs(dot(inward[k], b)) + qb, bend = bends[k] = length(b) + qb;
         const double lens = (across + 0.32 * (std::fabs(bn) + q)) * std::max(lengths[(k + 1) % 3], lengths[(k + 2) % 3]) * lengths[k];
         result.quiet = result.quiet && bend <= lengths[k] && lens <= 0.39 * twice_area * (2 * lengths[k] - bend);
         result.across[k] = across / 8;
     }
+    // As in bound_cell.cpp: the map to the plane keeps its orientation.
+    const int base = lengths[0] >= lengths[1] && lengths[0] >= lengths[2] ? 0 : lengths[1] >= lengths[2] ? 1 : 2, i = (base + 1) % 3, j = (base + 2) % 3;
+    const auto at = [&](int k, int c) -> Point {
+        const int after = (k + 1) % 3, last = (k + 2) % 3;
+        if (c == k) return sides[k] - 0.5 * forms[k];
+        if (c == after) return sides[k] + 0.5 * forms[k];
+        return sides[k] + 0.5 * (forms[last] - forms[after]);
+    };
+    Point ai[3], aj[3];
+    for (int c = 0; c < 3; ++c) ai[c] = at(i, c), aj[c] = at(j, c);
+    double least = kInfinity;
+    for (int c = 0; c < 3; ++c) {
+        const int d = (c + 1) % 3;
+        least = std::min({least, dot(n, cross(ai[c], aj[c])), 0.5 * (dot(n, cross(ai[c], aj[d])) + dot(n, cross(ai[d], aj[c])))});
+    }
+    const auto most = [&](int k) { return lengths[k] + 0.5 * (bends[0] + bends[1] + bends[2] + bends[k]); };
+    const auto off = [&](int k) { return 0.5 * (strays[0] + strays[1] + strays[2] + strays[k]); };
+    result.quiet = result.quiet && most(i) * off(j) + most(j) * off(i) + off(i) * off(j) < least;
     result.unit = n;
     result.normal = 0.5 * std::max(simplex_maximum(plus[0], plus[1], plus[2]), simplex_maximum(minus[0], minus[1], minus[2]));
     return result;

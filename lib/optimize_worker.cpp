@@ -212,10 +212,15 @@ bool Worker::remove(Site site, bool relaxed) {
         p.live = false;
         all_.rim_points()[p.before].after = p.after, all_.rim_points()[p.after].before = p.before;
     }
-    if (worst() <= kEnough) return finish(true);
+    last_worst = worst();
+    last_kind = 1;
+    if (last_worst <= kEnough) return finish(true);
+    last_kind = 2;
     if (!relaxed) return finish(false);
     const auto region = around(links);
-    return finish(relax(region));
+    last_kind = 3;
+    bool r = relax(region); last_worst = worst(); if (r) last_kind = 4;
+    return finish(r);
 }
 
 }  // namespace isoparm

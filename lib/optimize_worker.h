@@ -22,6 +22,7 @@ public:
     bool remove(Site site, bool relax);
     double cost_of_removal(Site site) const;
 
+    double last_worst = 0; int last_kind = 0;
 private:
     bool move_once(Site site);
     bool flip_once(Site site);
