@@ -23,7 +23,8 @@ struct SecondDerivatives {
     bool bounded = false;                  // false: some of that has no bound, nothing else is set
 
     SecondDerivatives() = default;
-    SecondDerivatives(const Patch& patch, const Box& box);
+    /// Third derivatives are enclosed over parts x parts pieces of the box, which sharpens what intervals overestimate.
+    SecondDerivatives(const Patch& patch, const Box& box, int parts = 1);
 };
 
 class BoundCell {

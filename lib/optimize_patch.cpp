@@ -383,7 +383,7 @@ void FreePatch::sharpen(std::uint32_t i) {
     const Places p = places(t.corner);
     const auto [u0, u1] = std::minmax({p.uv[0].x, p.uv[1].x, p.uv[2].x});
     const auto [v0, v1] = std::minmax({p.uv[0].y, p.uv[1].y, p.uv[2].y});
-    const TriangleBound b = bound_triangle(SecondDerivatives(patch_, {{u0, u1}, {v0, v1}}), {p.uv, p.x, p.slack}, measure_);
+    const TriangleBound b = bound_triangle(SecondDerivatives(patch_, {{u0, u1}, {v0, v1}}, 3), {p.uv, p.x, p.slack}, measure_);
     if (b.quiet && b.normal < t.proof.normal) t.proof = b;
 }
 
