@@ -38,31 +38,6 @@ double largest_form(const std::array<double, 3>& b, const std::array<double, 3>&
     return std::max(simplex_maximum(q[0] + b[0], q[1] + b[1], q[2] + b[2]), simplex_maximum(q[0] - b[0], q[1] - b[1], q[2] - b[2]));
 }
 
-/// (Q2) of docs/certificates.md: the map to the plane across n has a positive Jacobian all over the triangle. x: its edges; b: H(m) on them,
-/// q: what it may be off by; bend: at least |b| + q.
-bool keeps_orientation(const Point& n, const std::array<Point, 3>& x, const std::array<double, 3>& side, const std::array<Point, 3>& b, const std::array<double, 3>& q,
-                       const std::array<double, 3>& bend, double tilt, double twice_area) {
-    const int base = side[0] >= side[1] && side[0] >= side[2] ? 0 : side[1] >= side[2] ? 1 : 2, i = kNext[base], j = kNext[i];
-    // The derivative along edge k at corner c were H constant: x_k + H[corner - middle of the edge, e_k].
-    const auto at = [&](int k, int c) -> Point {
-        const int after = kNext[k], last = kNext[after];
-        if (c == k) return x[k] - 0.5 * b[k];
-        if (c == after) return x[k] + 0.5 * b[k];
-        return x[k] + 0.5 * (b[last] - b[after]);
-    };
-    std::array<Point, 3> along_i, along_j;
-    for (int c = 0; c < 3; ++c) along_i[c] = at(i, c), along_j[c] = at(j, c);
-    double least = dot(n, cross(along_i[0], along_j[0]));
-    for (int c = 0; c < 3; ++c) {
-        const int d = kNext[c];
-        least = std::min({least, dot(n, cross(along_i[c], along_j[c])), 0.5 * (dot(n, cross(along_i[c], along_j[d])) + dot(n, cross(along_i[d], along_j[c])))});
-    }
-    const auto most = [&](int k) { return side[k] + 0.5 * (bend[0] + bend[1] + bend[2] + bend[k]); };
-    const auto off = [&](int k) { return 0.5 * (q[0] + q[1] + q[2] + q[k]); };
-    const double mi = most(i), mj = most(j), oi = off(i), oj = off(j);
-    return safe(mi * oj + mj * oi + oi * oj + (tilt + 1e-13) * mi * mj + 2 * tilt * twice_area) < least;
-}
-
 Box half_of(const Box& box, int k) {
     const double mu = mid(box.u), mv = mid(box.v);
     return {k & 1 ? Interval(mu, box.u.hi) : Interval(box.u.lo, mu), k & 2 ? Interval(mv, box.v.hi) : Interval(box.v.lo, mv)};
@@ -129,6 +104,29 @@ SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box, int par
     }
     const double all = h_size[0] + h_size[1] + h_size[2] + t_size[0] + t_size[1] + t_size[2] + t_size[3] + h_rad[0] + h_rad[1] + h_rad[2];
     bounded = all < 1e290;
+}
+
+bool keeps_orientation(const Point& n, const std::array<Point, 3>& x, const std::array<Point, 3>& b, const std::array<double, 3>& q, const std::array<double, 3>& bend, double tilt) {
+    const std::array<double, 3> side{length(x[0]), length(x[1]), length(x[2])};
+    const int base = side[0] >= side[1] && side[0] >= side[2] ? 0 : side[1] >= side[2] ? 1 : 2, i = kNext[base], j = kNext[i];
+    // The derivative along edge k at corner c were H constant: x_k + H[corner - middle of the edge, e_k].
+    const auto at = [&](int k, int c) -> Point {
+        const int after = kNext[k], last = kNext[after];
+        if (c == k) return x[k] - 0.5 * b[k];
+        if (c == after) return x[k] + 0.5 * b[k];
+        return x[k] + 0.5 * (b[last] - b[after]);
+    };
+    std::array<Point, 3> along_i, along_j;
+    for (int c = 0; c < 3; ++c) along_i[c] = at(i, c), along_j[c] = at(j, c);
+    double least = dot(n, cross(along_i[0], along_j[0]));
+    for (int c = 0; c < 3; ++c) {
+        const int d = kNext[c];
+        least = std::min({least, dot(n, cross(along_i[c], along_j[c])), 0.5 * (dot(n, cross(along_i[c], along_j[d])) + dot(n, cross(along_i[d], along_j[c])))});
+    }
+    const auto most = [&](int k) { return side[k] + 0.5 * (bend[0] + bend[1] + bend[2] + bend[k]); };
+    const auto off = [&](int k) { return 0.5 * (q[0] + q[1] + q[2] + q[k]); };
+    const double mi = most(i), mj = most(j), oi = off(i), oj = off(j);
+    return safe(mi * oj + mj * oi + oi * oj + (tilt + 1e-13) * mi * mj + 2 * tilt * dot(n, cross(x[i], x[j]))) < least;
 }
 
 TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& triangle, Measure measure, bool least) {
@@ -213,7 +211,7 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
         const double lens = (across[k] + 0.32 * (std::fabs(bn[k]) + qn[k] + result.tilt * bend[k])) * std::max(side[kNext[k]], side[kNext[kNext[k]]]) * side[k];
         quiet = quiet && bend[k] <= side[k] && lens <= 0.39 * twice_area * (2 * side[k] - bend[k]);
     }
-    quiet = quiet && keeps_orientation(n, x, side, b, q, bend, result.tilt, twice_area);
+    quiet = quiet && keeps_orientation(n, x, b, q, bend, result.tilt);
     if (!quiet) return result;
     result.quiet = true;
     result.normal = safe(0.5 * largest_form(bn, qn) + result.tilt * result.parametric);

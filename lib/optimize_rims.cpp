@@ -1,15 +1,13 @@
 #include "optimize_rims.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <unordered_map>
 
 namespace isoparm {
 
 FreeComposite::FreeComposite(const Refinement& refinement, const Composite& surface, const Topology& topology, double tolerance, Measure measure)
     : refinement_(refinement), surface_(surface), topology_(topology) {
     for (std::size_t m = 0; m < surface.size(); ++m) patches_.emplace_back(surface[m].patch, refinement.patches()[m], refinement.positions(), tolerance, measure);
+    // Leaves of the rims, in order, are the pieces between points.
     std::vector<std::vector<std::uint32_t>> pieces(topology.rims.size());
     const auto& nodes = refinement.rim_nodes();
     for (std::uint32_t i = 0; i < nodes.size(); ++i)
@@ -31,9 +29,9 @@ FreeComposite::FreeComposite(const Refinement& refinement, const Composite& surf
             for (std::size_t use = 0; use < rim.uses.size(); ++use) {
                 const PatchEdge& e = refinement.patches()[rim.uses[use].member].edges[node.edge[use]];
                 p.corner[use] = e.reversed != end ? e.b : e.a;
-                FreeCorner& c = patches_[rim.uses[use].member].corner_to_set_up(p.corner[use]);
-                if (!inner || rim.collapsed || c.freedom != Freedom::inside) c.freedom = Freedom::fixed;
-                else c.freedom = Freedom::rim, c.rim_point = index;
+                FreePatch& patch = patches_[rim.uses[use].member];
+                const bool free = inner && !rim.collapsed && patch.corners()[p.corner[use]].freedom == Freedom::inside;
+                patch.set_freedom(p.corner[use], free ? Freedom::rim : Freedom::fixed, free ? index : kNone);
             }
             points_.push_back(p);
         }
@@ -69,7 +67,7 @@ PatchMesh FreeComposite::mesh_of(std::size_t member, std::vector<RimNode>& nodes
     std::vector<std::uint32_t> first(patch.corners().size(), kNone), next;  // edges by their smaller corner
     for (std::size_t i = 0; i < number.size(); ++i) {
         const FreeCorner& c = patch.corners()[i];
-        if (c.triangle == kNone) continue;
+        if (!c.live()) continue;
         number[i] = std::uint32_t(mesh.uv.size());
         mesh.uv.push_back(c.uv), mesh.vertex.push_back(c.vertex);
     }
@@ -124,7 +122,7 @@ void FreeComposite::write(Refinement& refinement) const {
     }
     for (const FreePatch& p : patches_)
         for (const FreeCorner& c : p.corners())
-            if (c.triangle != kNone) positions[c.vertex] = c.x;
+            if (c.live()) positions[c.vertex] = c.x;
     std::vector<PatchMesh> meshes(patches_.size());
     for (std::size_t m = 0; m < patches_.size(); ++m) meshes[m] = mesh_of(m, nodes, node_of);
     refinement.replace(std::move(meshes), std::move(nodes), std::move(positions));

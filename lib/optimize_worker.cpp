@@ -1,28 +1,24 @@
 #include "optimize_worker.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace isoparm {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr float kLeastStep = 0.01f, kMostStep = 0.4f;
-int kSweeps = 12;             // of relaxation
-constexpr double kEnough = 0.995;
-
-bool same(Site a, Site b) { return a.patch == b.patch && a.corner == b.corner; }
+constexpr float kLeastStep = 0.01f, kMostStep = 0.4f;  // of moves, relative to the edges
+constexpr double kGain = 1 - 1e-4;     // a move lowers the energy at least by this factor
+constexpr double kEnough = 0.995;      // tolerances: what estimates should say before a proof is tried
+constexpr int kSweeps = 12;            // of relaxation
+constexpr double kProgress = 0.9;      // of what is above that, after each sweep but the first
 
 }  // namespace
 
 bool Worker::mine(std::uint32_t point) const {
-    const Rim& rim = all_.rim_of(all_.rim_points()[point]);
     const RimPoint& p = all_.rim_points()[point];
-    for (std::size_t use = 0; use < rim.uses.size(); ++use) {
-        const auto m = rim.uses[use].member;
-        if (std::find(members_.begin(), members_.end(), m) == members_.end()) return false;
-        if (all_.patches()[m].corners()[p.corner[use]].freedom != Freedom::rim) return false;
+    const auto& uses = all_.rim_of(p).uses;
+    for (std::size_t use = 0; use < uses.size(); ++use) {
+        if (std::find(members_.begin(), members_.end(), uses[use].member) == members_.end()) return false;
+        if (all_.patches()[uses[use].member].corners()[p.corner[use]].freedom != Freedom::rim) return false;
     }
     return true;
 }
@@ -31,9 +27,8 @@ std::vector<Site> Worker::sites_of(Site site) const {
     const FreeCorner& c = all_.patches()[site.patch].corners()[site.corner];
     if (c.freedom != Freedom::rim) return {site};
     const RimPoint& p = all_.rim_points()[c.rim_point];
-    const Rim& rim = all_.rim_of(p);
     std::vector<Site> list;
-    for (std::size_t use = 0; use < rim.uses.size(); ++use) list.push_back({rim.uses[use].member, p.corner[use]});
+    for (std::size_t use = 0; use < all_.rim_of(p).uses.size(); ++use) list.push_back({all_.rim_of(p).uses[use].member, p.corner[use]});
     return list;
 }
 
@@ -43,15 +38,11 @@ void Worker::begin() {
 }
 
 bool Worker::finish(bool good) {
-    if (good)
-        for (const auto m : members_) good = good && all_.patches()[m].certify();
-    for (const auto m : members_) {
-        if (good) all_.patches()[m].keep();
-        else all_.patches()[m].take_back();
-    }
-    if (!good)
-        for (auto it = old_points_.rbegin(); it != old_points_.rend(); ++it) all_.rim_points()[it->first] = it->second;
-    return good;
+    for (const auto m : members_) good = good && all_.patches()[m].certify();
+    if (good) return true;
+    for (const auto m : members_) all_.patches()[m].take_back();
+    for (auto it = old_points_.rbegin(); it != old_points_.rend(); ++it) all_.rim_points()[it->first] = it->second;
+    return false;
 }
 
 double Worker::worst() const {
@@ -63,68 +54,55 @@ double Worker::worst() const {
 bool Worker::move_rim(std::uint32_t index) {
     if (!mine(index)) return false;
     const RimPoint p = all_.rim_points()[index];
-    const Rim& rim = all_.rim_of(p);
+    const auto& uses = all_.rim_of(p).uses;
+    const auto patch = [&](std::size_t use) -> FreePatch& { return all_.patches()[uses[use].member]; };
     std::vector<Ring> rings;
-    double least = 0;
-    for (std::size_t use = 0; use < rim.uses.size(); ++use) {
-        const FreePatch& patch = all_.patches()[rim.uses[use].member];
-        rings.push_back(patch.ring(p.corner[use]));
-        least += patch.energy(rings.back());
+    double start = 0;
+    for (std::size_t use = 0; use < uses.size(); ++use) {
+        rings.push_back(patch(use).ring(p.corner[use]));
+        start += patch(use).energy(rings.back());
     }
-    const std::uint32_t first = rim.uses[0].member;
-    const float step = all_.patches()[first].corners()[p.corner[0]].step;
+    const float step = patch(0).corners()[p.corner[0]].step;
     RimPoint best = p;
-    std::array<Vec2, 2> best_uv;
-    const double start = least;
+    std::array<Vec2, 2> best_uv, uv;
+    double least = start * kGain;
     for (const auto toward : {p.before, p.after}) {
         RimPoint q = p;
-        q.f = p.f + step * (all_.rim_points()[toward].f - p.f);
-        std::array<Vec2, 2> uv;
+        q.f = p.f + double(step) * (all_.rim_points()[toward].f - p.f);
         all_.place(p, q.f, q.x, uv);
         double sum = 0;
-        for (std::size_t use = 0; use < rim.uses.size() && sum < least; ++use)
-            sum += all_.patches()[rim.uses[use].member].energy_at(rings[use], p.corner[use], uv[use], q.x);
+        for (std::size_t use = 0; use < uses.size() && sum < least; ++use) sum += patch(use).energy_at(rings[use], p.corner[use], uv[use], q.x);
         if (sum < least) least = sum, best = q, best_uv = uv;
     }
-    const bool moved = least < start * (1 - 1e-4);
+    const bool moved = best.f != p.f;
     if (moved) {
         old_points_.push_back({index, p});
         all_.rim_points()[index] = best;
-        for (std::size_t use = 0; use < rim.uses.size(); ++use) all_.patches()[rim.uses[use].member].move(p.corner[use], best_uv[use], best.x);
+        for (std::size_t use = 0; use < uses.size(); ++use) patch(use).move(p.corner[use], best_uv[use], best.x);
     }
-    all_.patches()[first].set_step(p.corner[0], moved ? std::min(kMostStep, step * 1.3f) : std::max(kLeastStep, step * 0.5f));
+    patch(0).set_step(p.corner[0], moved ? std::min(kMostStep, step * 1.3f) : std::max(kLeastStep, step * 0.5f));
     return moved;
 }
 
+/// A step toward one of the corners around, whichever lowers the energy most.
 bool Worker::move_once(Site site) {
     FreePatch& patch = all_.patches()[site.patch];
     const FreeCorner c = patch.corners()[site.corner];
-    if (c.freedom == Freedom::fixed || c.triangle == kNone) return false;
+    if (c.freedom == Freedom::fixed || !c.live()) return false;
     if (c.freedom == Freedom::rim) return move_rim(c.rim_point);
     const Ring ring = patch.ring(site.corner);
-    const double start = patch.energy(ring);
-    double least = start;
+    double least = patch.energy(ring) * kGain;
+    bool moved = false;
     Vec2 best;
     Point best_x;
-    const auto consider = [&](const Vec2& p) {
-        const Point x = patch.patch().point(p.x, p.y);
-        const double sum = patch.energy_at(ring, site.corner, p, x);
-        if (sum < least) least = sum, best = p, best_x = x;
-    };
     for (const auto l : ring.links) {
         const Vec2 to = patch.corners()[l].uv;
-        Vec2 p{c.uv.x + c.step * (to.x - c.uv.x), c.uv.y + c.step * (to.y - c.uv.y)};
-        if (c.freedom == Freedom::along_u) {
-            if (to.y != c.uv.y) continue;
-            p.y = c.uv.y;
-        }
-        if (c.freedom == Freedom::along_v) {
-            if (to.x != c.uv.x) continue;
-            p.x = c.uv.x;
-        }
-        consider(p);
+        if ((c.freedom == Freedom::along_u && to.y != c.uv.y) || (c.freedom == Freedom::along_v && to.x != c.uv.x)) continue;
+        Vec2 p{c.uv.x + double(c.step) * (to.x - c.uv.x), c.uv.y + double(c.step) * (to.y - c.uv.y)};
+        const Point x = patch.patch().point(p.x, p.y);
+        const double sum = patch.energy_at(ring, site.corner, p, x);
+        if (sum < least) least = sum, best = p, best_x = x, moved = true;
     }
-    const bool moved = least < start * (1 - 1e-4);
     if (moved) patch.move(site.corner, best, best_x);
     patch.set_step(site.corner, moved ? std::min(kMostStep, c.step * 1.3f) : std::max(kLeastStep, c.step * 0.5f));
     return moved;
@@ -132,31 +110,23 @@ bool Worker::move_once(Site site) {
 
 bool Worker::flip_once(Site site) {
     FreePatch& patch = all_.patches()[site.patch];
-    if (patch.corners()[site.corner].triangle == kNone) return false;
+    if (!patch.corners()[site.corner].live()) return false;
     bool any = false;
     for (const auto t : patch.ring(site.corner).triangles)
-        for (int k = 0; k < 3; ++k)
-            if (patch.flip(t, k)) any = true;
+        for (int k = 0; k < 3; ++k) any = patch.flip(t, k) || any;
     return any;
 }
 
-bool Worker::improve(Site site) {
+void Worker::improve(Site site) {
     begin();
     const bool moved = move_once(site);
     const float step = all_.patches()[site.patch].corners()[site.corner].step;
-    if (!moved) {
-        finish(false);
-        all_.patches()[site.patch].set_step(site.corner, step);
-        return false;
-    }
-    const bool good = finish(true);
-    if (!good) all_.patches()[site.patch].set_step(site.corner, std::max(kLeastStep, step * 0.3f));
-    return good;
+    if (!(moved && finish(true)) && moved) all_.patches()[site.patch].set_step(site.corner, std::max(kLeastStep, step * 0.3f));
 }
 
-bool Worker::flip_around(Site site) {
+void Worker::flip_around(Site site) {
     begin();
-    return finish(flip_once(site));
+    if (flip_once(site)) finish(true);
 }
 
 double Worker::cost_of_removal(Site site) const {
@@ -165,39 +135,45 @@ double Worker::cost_of_removal(Site site) const {
     return most;
 }
 
+/// The corners of two rings, those that may move.
 std::vector<Site> Worker::around(const std::vector<Site>& links) const {
     std::vector<Site> list;
     const auto add = [&](Site s) {
-        const FreePatch& patch = all_.patches()[s.patch];
-        const FreeCorner& c = patch.corners()[s.corner];
-        if (c.freedom == Freedom::fixed || c.triangle == kNone) return;
-        if (std::find(members_.begin(), members_.end(), s.patch) == members_.end()) return;
-        if (std::none_of(list.begin(), list.end(), [&](Site o) { return same(o, s); })) list.push_back(s);
+        const FreeCorner& c = all_.patches()[s.patch].corners()[s.corner];
+        if (c.freedom == Freedom::fixed || !c.live()) return;
+        if (std::none_of(list.begin(), list.end(), [&](Site o) { return o.patch == s.patch && o.corner == s.corner; })) list.push_back(s);
     };
     for (const Site& s : links) add(s);
     for (const Site& s : links)
-        if (all_.patches()[s.patch].corners()[s.corner].triangle != kNone)
+        if (all_.patches()[s.patch].corners()[s.corner].live())
             for (const auto l : all_.patches()[s.patch].ring(s.corner).links) add({s.patch, l});
     return list;
 }
 
-bool Worker::relax(const std::vector<Site>& around) {
+bool Worker::relaxed(const std::vector<Site>& around) {
     double last = worst();
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
         for (const Site& s : around) move_once(s);
         for (const Site& s : around) flip_once(s);
         const double now = worst();
         if (now <= kEnough) return true;
-        // What is left has to go down fast enough.
-        if (sweep >= 2 && (now - kEnough) > 0.9 * (last - kEnough) ) return false;
+        if (sweep >= 2 && now - kEnough > kProgress * (last - kEnough)) return false;
         last = now;
     }
     return false;
 }
 
-bool Worker::remove(Site site, bool relaxed) {
-    const FreeCorner& corner = all_.patches()[site.patch].corners()[site.corner];
-    if (corner.triangle == kNone || (corner.freedom == Freedom::rim && !mine(corner.rim_point))) return false;
+void Worker::take_off_rim(std::uint32_t index) {
+    auto& points = all_.rim_points();
+    const RimPoint p = points[index];
+    for (const auto i : {index, p.before, p.after}) old_points_.push_back({i, points[i]});
+    points[index].live = false;
+    points[p.before].after = p.after, points[p.after].before = p.before;
+}
+
+bool Worker::remove(Site site, bool relax) {
+    const FreeCorner corner = all_.patches()[site.patch].corners()[site.corner];
+    if (!corner.live() || (corner.freedom == Freedom::rim && !mine(corner.rim_point))) return false;
     const std::vector<Site> sites = sites_of(site);
     std::vector<Site> links;
     for (const Site& s : sites)
@@ -205,22 +181,8 @@ bool Worker::remove(Site site, bool relaxed) {
     begin();
     for (const Site& s : sites)
         if (!all_.patches()[s.patch].remove(s.corner)) return finish(false);
-    const FreeCorner& c = all_.patches()[site.patch].corners()[site.corner];
-    if (c.freedom == Freedom::rim) {
-        RimPoint& p = all_.rim_points()[c.rim_point];
-        for (const auto i : {c.rim_point, p.before, p.after}) old_points_.push_back({i, all_.rim_points()[i]});
-        p.live = false;
-        all_.rim_points()[p.before].after = p.after, all_.rim_points()[p.after].before = p.before;
-    }
-    last_worst = worst();
-    last_kind = 1;
-    if (last_worst <= kEnough) return finish(true);
-    last_kind = 2;
-    if (!relaxed) return finish(false);
-    const auto region = around(links);
-    last_kind = 3;
-    bool r = relax(region); last_worst = worst(); if (r) last_kind = 4;
-    return finish(r);
+    if (corner.freedom == Freedom::rim) take_off_rim(corner.rim_point);
+    return finish(worst() <= kEnough || (relax && relaxed(around(links))));
 }
 
 }  // namespace isoparm

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 
@@ -145,12 +146,19 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     if (!surface.empty() && !(diagonal > 1e-70 && diagonal < 1e70))
         throw_input("found a surface of size " + to_text(diagonal) + ", expected one between 1e-70 and 1e70 to tessellate; scale the data");
     const Topology topology = find_topology(surface, join_tolerance(options.tolerance, diagonal));
-    Refinement refinement(surface, topology, options.tolerance, options.measure, double(options.max_triangles));
-    refine(refinement, options);
+    const auto fast = [&] {
+        auto refined = std::make_unique<Refinement>(surface, topology, options.tolerance, options.measure, double(options.max_triangles));
+        refine(*refined, options);
+        return refined;
+    };
+    auto refined = fast();
     if (options.quality == Quality::optimal) {
-        optimize(refinement, surface, topology, options.tolerance, options.measure, options.progress);
-        refine(refinement, options);
+        const std::size_t triangles = refined->triangle_count();
+        optimize(*refined, surface, topology, options.tolerance, options.measure, options.progress);
+        refine(*refined, options);  // proves the whole again, and splits what should fail
+        if (refined->triangle_count() > triangles) refined = fast();
     }
+    const Refinement& refinement = *refined;
 
     Tessellation result;
     result.tolerance = options.tolerance;
