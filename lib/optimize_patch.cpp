@@ -42,7 +42,8 @@ FreePatch::FreePatch(const Patch& patch, const PatchMesh& mesh, const std::vecto
             t.beside[k] = side[0] == i ? side[1] : side[0];
             FreeCorner& c = corners_[t.corner[k]];
             c.triangle = i;
-            if (t.left_out) c.freedom = Freedom::fixed;
+            // Where second derivatives have no bound, proofs cost too much to try.
+            if (t.left_out || !t.cell->model().bounded) c.freedom = Freedom::fixed;
             middle.x += c.uv.x / 3, middle.y += c.uv.y / 3;
         }
         // Cells are in the order of the lines between breaks, u-major.
@@ -72,10 +73,10 @@ Estimate FreePatch::estimate_of(const Places& p, const FreeTriangle& like) const
     e.parametric = kInfinity;
     if (!turns_left(p.uv)) return e;
     const SecondDerivatives& model = like.cell->model();
-    if (model.bounded && measure_ == Measure::geometric) e = estimate(model, p);
+    if (!model.bounded) return e;
+    if (measure_ == Measure::geometric) e = estimate(model, p);
     if (!e.quiet) {
-        const BoundCell* cell = like.root;
-        const TriangleBound b = model.bounded ? bound_triangle(model, p.corners(), measure_) : BoundCell::bound(patch_, cell, p.corners(), tolerance_ - p.slack, measure_);
+        const TriangleBound b = bound_triangle(model, p.corners(), measure_);
         e = {b.parametric, b.normal, b.across, b.unit, measure_ == Measure::geometric && b.quiet};
     }
     e.parametric = (e.parametric + p.slack) / tolerance_;

@@ -14,8 +14,9 @@ constexpr int kPieces = 3;
 bool FreePatch::prove(std::uint32_t i) {
     FreeTriangle& t = triangles_[i];
     const Places p = places(t.corner);
-    t.cell = t.root;
-    t.proof = BoundCell::bound(patch_, t.cell, p.corners(), tolerance_ - p.slack, measure_);
+    const BoundCell* cell = t.root;
+    t.proof = BoundCell::bound(patch_, cell, p.corners(), tolerance_ - p.slack, measure_);
+    if (cell->model().bounded) t.cell = cell;
     t.proved = true, t.sharp = false;
     return t.proof.own(measure_) <= tolerance_;
 }
