@@ -18,8 +18,9 @@ constexpr std::array<int, 3> kNext{1, 2, 0};
 constexpr double kClear = 0.4, kVague = 0.8;
 /// Cells this much wider than a triangle are not tried.
 constexpr double kLarge = 10;
-/// Of the triangle's own box along each direction.
+/// Pieces of the triangle's own box along each direction, which are tried where they may bring it below the tolerance.
 constexpr int kPieces = 3;
+constexpr double kNear = 2;
 
 Point middle(const Vec3<Interval>& x) { return {mid(x.x), mid(x.y), mid(x.z)}; }
 double radius(const Vec3<Interval>& x) { return rounding::length_up(rad(x.x), rad(x.y), rad(x.z)); }
@@ -50,8 +51,9 @@ Box box_of(const std::array<Vec2, 3>& p) {
 }
 bool inside(const Box& box, const Box& of) { return box.u.lo >= of.u.lo && box.u.hi <= of.u.hi && box.v.lo >= of.v.lo && box.v.hi <= of.v.hi; }
 
-/// Third derivatives over a box: also in the hull of their ranges over pieces of it, those outside the domain left out.
-void intersect_thirds(Enclosure& e, const Patch& patch, const Box& box, int parts) {
+/// The ranges over a box become the hulls of those over pieces of it, pieces outside the domain left out: intervals that overestimate
+/// grow with the box.
+void enclose_pieces(Enclosure& e, const Patch& patch, const Box& box, int parts) {
     const auto cut = [parts](const Interval& x, int i) {
         const auto at = [&](int k) { return k == 0 ? x.lo : k == parts ? x.hi : x.lo + (x.hi - x.lo) * k / parts; };
         return Interval(at(i), at(i + 1));
@@ -63,10 +65,10 @@ void intersect_thirds(Enclosure& e, const Patch& patch, const Box& box, int part
             const Box piece{cut(box.u, i), cut(box.v, j)};
             if (patch.domain() == Domain::triangle && piece.u.lo + piece.v.lo > 1 + 1e-15) continue;
             const auto over = patch.enclose(piece).over;
-            for (int k = 0; k < 10; ++k)
+            for (std::size_t k = 0; k < std::size(over.x.c); ++k)
                 for (const auto axis : {&Vec3<JetUV<Interval, 3>>::x, &Vec3<JetUV<Interval, 3>>::y, &Vec3<JetUV<Interval, 3>>::z}) {
-                    Interval &all = (hull_of_all.*axis).c[k], &here = const_cast<Interval&>((over.*axis).c[k]);
-                    all = first ? here : hull(all, here);
+                    Interval& all = (hull_of_all.*axis).c[k];
+                    all = first ? (over.*axis).c[k] : hull(all, (over.*axis).c[k]);
                 }
             first = false;
         }
@@ -77,7 +79,7 @@ void intersect_thirds(Enclosure& e, const Patch& patch, const Box& box, int part
 
 SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box, int parts) {
     Enclosure e = patch.enclose(box);
-    if (parts > 1) intersect_thirds(e, patch, box, parts);
+    if (parts > 1) enclose_pieces(e, patch, box, parts);
     u = e.u, v = e.v;
     const double half[2] = {rounding::up(std::max(box.u.hi - u, u - box.u.lo)), rounding::up(std::max(box.v.hi - v, v - box.v.lo))};
     const auto centre = [&](int i, int j, double scale) {
@@ -267,9 +269,11 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
     const SecondDerivatives model(patch, box);
     TriangleBound sharpest = bound_triangle(model, triangle, measure);
     if (sharpest.own(measure) <= tolerance || bound_triangle(model, triangle, measure, true).own(measure) > (1 - kClear) * sharpest.own(measure)) return sharpest;
-    const TriangleBound finer = bound_triangle(SecondDerivatives(patch, box, kPieces), triangle, measure);
-    if (finer.own(measure) < sharpest.own(measure)) sharpest = finer;
-    if (sharpest.own(measure) <= tolerance) return sharpest;
+    if (sharpest.own(measure) <= kNear * tolerance) {
+        const TriangleBound finer = bound_triangle(SecondDerivatives(patch, box, kPieces), triangle, measure);
+        if (finer.own(measure) < sharpest.own(measure)) sharpest = finer;
+        if (sharpest.own(measure) <= tolerance) return sharpest;
+    }
     const TriangleBound rough = bound_triangle(patch, triangle.uv, triangle.points);
     if (rough.parametric < sharpest.parametric) {
         sharpest.parametric = rough.parametric;
