@@ -20,10 +20,11 @@ Composite patches_of(const std::string& scene_name) {
 
 namespace {
 
-Work tessellate_once(const Composite& surface, double relative, Measure measure = Measure::geometric) {
+Work tessellate_once(const Composite& surface, double relative, Measure measure = Measure::geometric, Quality quality = Quality::fast) {
     TessellationOptions options;
     options.tolerance = relative * bounding_box(surface).diagonal();
     options.measure = measure;
+    options.quality = quality;
     const Tessellation t = tessellate(surface, options);
     if (!(t.certified_error <= t.tolerance) || t.topology.t_junctions > 0)
         throw std::logic_error("the mesh is not what was asked for");
@@ -54,6 +55,9 @@ std::vector<Case> tessellation_cases() {
             cases.push_back(std::move(c));
         }
         cases.push_back({table, "1e-4, one thread, parametric", "triangles", [patches] { return tessellate_once(patches, 1e-4, Measure::parametric); }});
+        Case optimal{table, "1e-3, one thread, optimal", "triangles", [patches] { return tessellate_once(patches, 1e-3, Measure::geometric, Quality::optimal); }};
+        optimal.repetitions = 1;  // they take many seconds
+        cases.push_back(std::move(optimal));
         Case c{table, "1e-4, all cores", "triangles", [patches] { return tessellate_once(patches, 1e-4); }};
         c.clock = Clock::wall;
         cases.push_back(std::move(c));

@@ -18,6 +18,9 @@ constexpr std::array<int, 3> kNext{1, 2, 0};
 constexpr double kClear = 0.4, kVague = 0.8;
 /// Cells this much wider than a triangle are not tried.
 constexpr double kLarge = 10;
+/// Pieces of the triangle's own box along each direction, which are tried where they may bring it below the tolerance.
+constexpr int kPieces = 3;
+constexpr double kNear = 2;
 
 Point middle(const Vec3<Interval>& x) { return {mid(x.x), mid(x.y), mid(x.z)}; }
 double radius(const Vec3<Interval>& x) { return rounding::length_up(rad(x.x), rad(x.y), rad(x.z)); }
@@ -78,10 +81,35 @@ Box box_of(const std::array<Vec2, 3>& p) {
 }
 bool inside(const Box& box, const Box& of) { return box.u.lo >= of.u.lo && box.u.hi <= of.u.hi && box.v.lo >= of.v.lo && box.v.hi <= of.v.hi; }
 
+/// The ranges over a box become the hulls of those over pieces of it, pieces outside the domain left out: intervals that overestimate
+/// grow with the box.
+void enclose_pieces(Enclosure& e, const Patch& patch, const Box& box, int parts) {
+    const auto cut = [parts](const Interval& x, int i) {
+        const auto at = [&](int k) { return k == 0 ? x.lo : k == parts ? x.hi : x.lo + (x.hi - x.lo) * k / parts; };
+        return Interval(at(i), at(i + 1));
+    };
+    Vec3<JetUV<Interval, 3>> hull_of_all;
+    bool first = true;
+    for (int i = 0; i < parts; ++i)
+        for (int j = 0; j < parts; ++j) {
+            const Box piece{cut(box.u, i), cut(box.v, j)};
+            if (patch.domain() == Domain::triangle && piece.u.lo + piece.v.lo > 1 + 1e-15) continue;
+            const auto over = patch.enclose(piece).over;
+            for (std::size_t k = 0; k < std::size(over.x.c); ++k)
+                for (const auto axis : {&Vec3<JetUV<Interval, 3>>::x, &Vec3<JetUV<Interval, 3>>::y, &Vec3<JetUV<Interval, 3>>::z}) {
+                    Interval& all = (hull_of_all.*axis).c[k];
+                    all = first ? (over.*axis).c[k] : hull(all, (over.*axis).c[k]);
+                }
+            first = false;
+        }
+    if (!first) e.over = hull_of_all;
+}
+
 }  // namespace
 
-SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box) {
-    const Enclosure e = patch.enclose(box);
+SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box, int parts) {
+    Enclosure e = patch.enclose(box);
+    if (parts > 1) enclose_pieces(e, patch, box, parts);
     u = e.u, v = e.v;
     const double half[2] = {rounding::up(std::max(box.u.hi - u, u - box.u.lo)), rounding::up(std::max(box.v.hi - v, v - box.v.lo))};
     const auto centre = [&](int i, int j, double scale) {
@@ -108,6 +136,29 @@ SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box) {
     }
     const double all = h_size[0] + h_size[1] + h_size[2] + t_size[0] + t_size[1] + t_size[2] + t_size[3] + h_rad[0] + h_rad[1] + h_rad[2];
     bounded = all < 1e290;
+}
+
+bool keeps_orientation(const Point& n, const std::array<Point, 3>& x, const std::array<Point, 3>& b, const std::array<double, 3>& q, const std::array<double, 3>& bend, double tilt) {
+    const std::array<double, 3> side{length(x[0]), length(x[1]), length(x[2])};
+    const int base = side[0] >= side[1] && side[0] >= side[2] ? 0 : side[1] >= side[2] ? 1 : 2, i = kNext[base], j = kNext[i];
+    // The derivative along edge k at corner c were H constant: x_k + H[corner - middle of the edge, e_k].
+    const auto at = [&](int k, int c) -> Point {
+        const int after = kNext[k], last = kNext[after];
+        if (c == k) return x[k] - 0.5 * b[k];
+        if (c == after) return x[k] + 0.5 * b[k];
+        return x[k] + 0.5 * (b[last] - b[after]);
+    };
+    std::array<Point, 3> along_i, along_j;
+    for (int c = 0; c < 3; ++c) along_i[c] = at(i, c), along_j[c] = at(j, c);
+    double least = dot(n, cross(along_i[0], along_j[0]));
+    for (int c = 0; c < 3; ++c) {
+        const int d = kNext[c];
+        least = std::min({least, dot(n, cross(along_i[c], along_j[c])), 0.5 * (dot(n, cross(along_i[c], along_j[d])) + dot(n, cross(along_i[d], along_j[c])))});
+    }
+    const auto most = [&](int k) { return side[k] + 0.5 * (bend[0] + bend[1] + bend[2] + bend[k]); };
+    const auto off = [&](int k) { return 0.5 * (q[0] + q[1] + q[2] + q[k]); };
+    const double mi = most(i), mj = most(j), oi = off(i), oj = off(j);
+    return safe(mi * oj + mj * oi + oi * oj + (tilt + 1e-13) * mi * mj + 2 * tilt * dot(n, cross(x[i], x[j]))) < least;
 }
 
 TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& triangle, Measure measure, bool least) {
@@ -193,14 +244,7 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
         const double lens = (across[k] + 0.32 * (std::fabs(bn[k]) + qn[k] + result.tilt * bend[k])) * std::max(side[kNext[k]], side[kNext[kNext[k]]]) * side[k];
         quiet = quiet && bend[k] <= side[k] && lens <= 0.39 * twice_area * (2 * side[k] - bend[k]);
     }
-    const int base = side[0] >= side[1] && side[0] >= side[2] ? 0 : side[1] >= side[2] ? 1 : 2, i = kNext[base], j = kNext[i];
-    // Dd[e_k] along a unit vector f is at most this, d the difference of S and L.
-    const auto slope = [&](const Point& f, int k) {
-        const auto along_f = [&](int edge) { return std::fabs(dot(f, b[edge])) + q[edge] + 2 * result.tilt * bend[edge]; };
-        return 0.5 * (along_f(0) + along_f(1) + along_f(2) + along_f(k));
-    };
-    const double all = 0.5 * (bend[0] + bend[1] + bend[2]), ji = slope(inward[i], j), ij = slope(inward[j], i), ii = slope(inward[i], i);
-    quiet = quiet && (side[i] + all + 0.5 * bend[i]) * ji + side[j] * ij + (all + 0.5 * bend[j]) * ii <= 0.98 * twice_area;
+    quiet = quiet && keeps_orientation(n, x, b, q, bend, result.tilt);
     if (!quiet) return result;
     result.quiet = true;
     result.normal = safe(0.5 * largest_form(bn, qn) + result.tilt * result.parametric);
@@ -256,6 +300,11 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
     const SecondDerivatives model(patch, box);
     TriangleBound sharpest = bound_triangle(model, triangle, measure);
     if (sharpest.own(measure) <= tolerance || bound_triangle(model, triangle, measure, true).own(measure) > (1 - kClear) * sharpest.own(measure)) return sharpest;
+    if (sharpest.own(measure) <= kNear * tolerance) {
+        const TriangleBound finer = bound_triangle(SecondDerivatives(patch, box, kPieces), triangle, measure);
+        if (finer.own(measure) < sharpest.own(measure)) sharpest = finer;
+        if (sharpest.own(measure) <= tolerance) return sharpest;
+    }
     const TriangleBound rough = bound_triangle(patch, triangle.uv, triangle.points);
     if (rough.parametric < sharpest.parametric) {
         sharpest.parametric = rough.parametric;

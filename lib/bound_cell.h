@@ -23,7 +23,8 @@ struct SecondDerivatives {
     bool bounded = false;                  // false: some of that has no bound, nothing else is set
 
     SecondDerivatives() = default;
-    SecondDerivatives(const Patch& patch, const Box& box);
+    /// Third derivatives are enclosed over parts x parts pieces of the box, which sharpens what intervals overestimate.
+    SecondDerivatives(const Patch& patch, const Box& box, int parts = 1);
 };
 
 class BoundCell {
@@ -54,5 +55,9 @@ private:
 
 /// The bound of a triangle in the box of the model. `least`: what no finer cell could go below, as far as the model tells; no bound.
 TriangleBound bound_triangle(const SecondDerivatives& model, const CornerData& triangle, Measure measure, bool least = false);
+
+/// (Q2) of docs/certificates.md: the map to the plane across n has a positive Jacobian all over the triangle. x: its edges; b: H(m) on them,
+/// q: what H may be off by; bend: at least |b| + q.
+bool keeps_orientation(const Point& n, const std::array<Point, 3>& x, const std::array<Point, 3>& b, const std::array<double, 3>& q, const std::array<double, 3>& bend, double tilt);
 
 }  // namespace isoparm

@@ -41,6 +41,18 @@ Refinement::Refinement(const Composite& surface, const Topology& topology, doubl
     start(most);
 }
 
+void Refinement::replace(std::vector<PatchMesh> patches, std::vector<RimNode> rim_nodes, std::vector<Point> positions) {
+    positions_ = std::move(positions);
+    rim_nodes_ = std::move(rim_nodes);
+    for (std::size_t m = 0; m < patches_.size(); ++m) {
+        patches[m].cells = std::move(patches_[m].cells);
+        patches_[m] = std::move(patches[m]);
+        measure_slack(std::uint32_t(m), 0);
+    }
+    worst_slack_ = 0;
+    collect_slack(std::vector<std::size_t>(patches_.size(), 0));
+}
+
 void Refinement::collect_slack(const std::vector<std::size_t>& first) {
     for (std::size_t m = 0; m < patches_.size(); ++m)
         for (std::size_t i = first[m]; i < patches_[m].slack.size(); ++i) worst_slack_ = std::max(worst_slack_, patches_[m].slack[i]);

@@ -117,6 +117,12 @@ public:
 
     const std::vector<Point>& positions() const { return positions_; }
     const std::vector<PatchMesh>& patches() const { return patches_; }
+    const std::vector<RimNode>& rim_nodes() const { return rim_nodes_; }
+    /// A point of a rim in the parameters of one of its uses; between `low` and `high` on the edge.
+    Vec2 on_rim(const RimUse& use, double fraction, const Point& position, double low, double high) const;
+    /// Other triangulations of the same patches: all their triangles are fresh, their slack is measured here. The vertices 0 to
+    /// nodes of the topology, and all those of rims, have to be where they were, or on their rims.
+    void replace(std::vector<PatchMesh> patches, std::vector<RimNode> rim_nodes, std::vector<Point> positions);
     /// Mesh edges on rims with one use: where the surface is open.
     std::vector<std::array<std::uint32_t, 2>> open_edges() const;
     bool collapsed(const PatchEdge& e) const { return e.rim_node != kNone && topology_.rims[rim_nodes_[e.rim_node].rim].collapsed; }
@@ -135,7 +141,6 @@ private:
     void collect_slack(const std::vector<std::size_t>& first);
     void bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t) const;
     void mark(PatchMesh& mesh, std::uint32_t edge);
-    Vec2 on_rim(const RimUse& use, double fraction, const Point& position, double low, double high) const;
 
     const Composite& surface_;
     const Topology& topology_;

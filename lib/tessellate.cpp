@@ -6,10 +6,12 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 
 #include "error.h"
+#include "optimize.h"
 #include "refine.h"
 #include "topology.h"
 
@@ -165,8 +167,19 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
         throw_input("found a surface of size " + to_text(diagonal) + ", expected one between 1e-70 and 1e70 to tessellate; scale the data");
     const Topology topology = find_topology(surface, join_tolerance(options.tolerance, diagonal));
     const double turn = options.normal_deviation > 0 ? tangent_down(options.normal_deviation) : std::numeric_limits<double>::infinity();
-    Refinement refinement(surface, topology, options.tolerance, options.measure, double(options.max_triangles), turn);
-    refine(refinement, options);
+    const auto fast = [&] {
+        auto refined = std::make_unique<Refinement>(surface, topology, options.tolerance, options.measure, double(options.max_triangles), turn);
+        refine(*refined, options);
+        return refined;
+    };
+    auto refined = fast();
+    if (options.quality == Quality::optimal) {
+        const std::size_t triangles = refined->triangle_count();
+        optimize(*refined, surface, topology, options.tolerance, options.measure, options.progress);
+        refine(*refined, options);  // proves the whole again, and splits what should fail
+        if (refined->triangle_count() > triangles) refined = fast();
+    }
+    const Refinement& refinement = *refined;
 
     Tessellation result;
     result.tolerance = options.tolerance;

@@ -11,6 +11,9 @@
 
 namespace isoparm {
 
+/// fast: bisection only. optimal: then vertices move, edges flip and vertices are removed, under the same certificate.
+enum class Quality { fast, optimal };
+
 struct TessellationOptions {
     double tolerance = 0;                    // scene units, absolute, > 0: largest distance between mesh and surface, both ways
     Measure measure = Measure::parametric;   // geometric: the distance of the two sets; parametric: of points at equal parameters, never less
@@ -18,6 +21,7 @@ struct TessellationOptions {
     bool study = true;                       // false leaves sampled_error and optimal_triangles 0
     std::function<void(double)> progress;    // called from the calling thread with a fraction in [0,1]; may be empty
     double normal_deviation = 0;             // degrees, below 90: largest angle between a triangle's normal and those of the surface over it; 0: any
+    Quality quality = Quality::fast;
 };
 
 struct SurfaceReport {

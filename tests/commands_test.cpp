@@ -51,7 +51,7 @@ TEST(Commands, UsageErrorsSuggest) {
     expect("eval " + scene("side_vertex") + " --at 0.6,0.6", 65, "u + v <= 1");
     expect("tessellate " + scene("coons"), 64, "-o is missing");
     expect("tessellate " + scene("coons") + " -o x.glb", 64, "not built yet");
-    expect("tessellate " + scene("coons") + " -o x.ply --quality optimal", 64, "not built yet");
+    expect("tessellate " + scene("coons") + " -o x.ply --quality best", 64, "expected one of: fast, optimal");
     expect("tessellate " + scene("coons") + " -o x.ply --vertices free", 64, "not built yet");
     expect("tessellate " + scene("coons") + " -o x.ply --certificate c.json", 64, "not built yet");
     expect("tessellate " + scene("coons") + " -o x.ply --tolerance 0", 64, "expected a positive number");
@@ -60,6 +60,19 @@ TEST(Commands, UsageErrorsSuggest) {
     expect("render " + scene("coons") + " -o x.png --exact", 64, "not built yet");
     expect("render " + scene("coons") + " -o x.png --size 10", 64, "expected WIDTHxHEIGHT");
     expect("figures nothing -o /tmp", 64, "expected one of: cone");
+}
+TEST(Commands, OptimalMeshesHaveFewerTrianglesAndSaySo) {
+    const TemporaryFolder folder;
+    const auto report = [&](const std::string& quality) {
+        const Outcome o = run("tessellate " + scene("coons") + " --tolerance 1e-2rel --quiet --report - -o '" + folder / "mesh.ply" + "' " + quality);
+        EXPECT_EQ(o.code, 0) << o.err;
+        return parsed(o.out);
+    };
+    const Json::Value fast = report(""), optimal = report("--quality optimal");
+    EXPECT_EQ(fast["quality"].asString(), "fast");
+    EXPECT_EQ(optimal["quality"].asString(), "optimal");
+    EXPECT_LT(optimal["triangles"].asInt(), fast["triangles"].asInt());
+    EXPECT_LE(optimal["certified_error"].asDouble(), optimal["tolerance"].asDouble());
 }
 TEST(Commands, InfoTellsWhatIsThere) {
     expect("info " + scene("sphere"), 0, "octant: bezier, degree 2 x 2, rational");

@@ -1,0 +1,84 @@
+// optimize_proof.cpp -- how a FreePatch proves what it changed. Refinement::bound_of has the last word on the whole mesh.
+#include <algorithm>
+
+#include "optimize_patch.h"
+
+namespace isoparm {
+namespace {
+
+/// Pieces of a triangle's box along each direction, over which the sharpest proof encloses third derivatives.
+constexpr int kPieces = 3;
+
+}  // namespace
+
+bool FreePatch::prove(std::uint32_t i) {
+    FreeTriangle& t = triangles_[i];
+    const Places p = places(t.corner);
+    const BoundCell* cell = t.root;
+    t.proof = BoundCell::bound(patch_, cell, p.corners(), tolerance_ - p.slack, measure_);
+    if (cell->model().bounded) t.cell = cell;
+    t.proved = true, t.sharp = false;
+    return t.proof.own(measure_) <= tolerance_;
+}
+
+/// A proof says no more than it had to, but the neighbours may need more.
+void FreePatch::sharpen(std::uint32_t i) {
+    if (triangles_[i].sharp || triangles_[i].left_out || !triangles_[i].proof.quiet) return;
+    touch(i);
+    FreeTriangle& t = triangles_[i];
+    t.sharp = true;
+    const Places p = places(t.corner);
+    const auto [u0, u1] = std::minmax({p.uv[0].x, p.uv[1].x, p.uv[2].x});
+    const auto [v0, v1] = std::minmax({p.uv[0].y, p.uv[1].y, p.uv[2].y});
+    const TriangleBound b = bound_triangle(SecondDerivatives(patch_, {{u0, u1}, {v0, v1}}, kPieces), p.corners(), measure_);
+    if (!b.quiet) return;
+    t.proof.normal = std::min(t.proof.normal, b.normal);
+    for (int k = 0; k < 3; ++k) t.proof.across[k] = std::min(t.proof.across[k], b.across[k]);
+}
+
+bool FreePatch::holds(std::uint32_t i) const {
+    const FreeTriangle& t = triangles_[i];
+    double slack = places(t.corner).slack;
+    std::array<const TriangleBound*, 3> neighbours{};
+    for (int k = 0; k < 3; ++k) {
+        const auto j = t.beside[k];
+        if (!behind(t, j)) continue;
+        neighbours[k] = &triangles_[j].proof;
+        slack = std::max(slack, places(triangles_[j].corner).slack);
+    }
+    const double bound = measure_ == Measure::geometric ? geometric_bound(t.proof, neighbours) : t.proof.parametric;
+    return rounding::up(bound + slack) <= tolerance_;
+}
+
+bool FreePatch::holds_sharply(std::uint32_t i) {
+    if (triangles_[i].left_out || holds(i)) return true;
+    sharpen(i);
+    if (holds(i)) return true;
+    for (const auto j : triangles_[i].beside)
+        if (j != kNone) sharpen(j);
+    return holds(i);
+}
+
+bool FreePatch::certify() {
+    for (const auto& [c, old] : old_corners_) {
+        FreeCorner& corner = corners_[c];
+        if (!corner.live() || (corner.uv.x == old.uv.x && corner.uv.y == old.uv.y)) continue;
+        const auto s = patch_.enclose_point(corner.uv.x, corner.uv.y);
+        corner.slack = rounding::length_up(mag(Interval(corner.x.x) - s.x), mag(Interval(corner.x.y) - s.y), mag(Interval(corner.x.z) - s.z));
+    }
+    for (const auto& [i, old] : old_triangles_) {
+        const FreeTriangle& t = triangles_[i];
+        if (t.live && !t.left_out && !t.proved && !prove(i)) return false;
+    }
+    // Sharper proofs are added to the list, and only lower the bounds of those before.
+    for (std::size_t k = 0, n = old_triangles_.size(); k < n; ++k) {
+        const auto i = old_triangles_[k].first;
+        if (!triangles_[i].live) continue;
+        if (!holds_sharply(i)) return false;
+        for (const auto j : triangles_[i].beside)
+            if (j != kNone && !holds_sharply(j)) return false;
+    }
+    return true;
+}
+
+}  // namespace isoparm
