@@ -33,6 +33,7 @@ struct StudyMethod {
     const char* name;
     const char* summary;                         // what it does, for people
     StudyMesh (*make)(const StudyInput& input);  // throws Error(budget) when the tolerance is not reached
+    bool slow = false;                           // left out unless it is asked for
 };
 const std::vector<StudyMethod>& study_methods();
 /// nullptr when there is none of that name.

@@ -21,6 +21,7 @@ const std::vector<StudyMethod>& study_methods() {
          "isoparm tessellate: rows of vertices as dense as the tolerance needs, then edges bisected; certified by the geometric distance",
          make_fast},
         {"parametric", "the same, refined until the distance at equal parameters is below the tolerance", make_parametric},
+        {"optimal", "as fast, then vertices moved and removed and edges flipped as long as the certificate keeps the tolerance", make_optimal, true},
     };
     return methods;
 }

@@ -10,6 +10,7 @@ StudyMesh make_uniform(const StudyInput& input);     // study_uniform.cpp
 StudyMesh make_quadtree(const StudyInput& input);    // study_quadtree.cpp
 StudyMesh make_fast(const StudyInput& input);        // study_tessellate.cpp
 StudyMesh make_parametric(const StudyInput& input);  // study_tessellate.cpp
+StudyMesh make_optimal(const StudyInput& input);     // study_tessellate.cpp
 
 /// "the tolerance ... was not reached: about ... triangles would be needed, the budget is ...".
 [[noreturn]] void not_reached(const StudyInput& input, double needed);

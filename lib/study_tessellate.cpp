@@ -5,10 +5,11 @@
 namespace isoparm {
 namespace {
 
-StudyMesh tessellated(const StudyInput& input, Measure measure) {
+StudyMesh tessellated(const StudyInput& input, Measure measure, Quality quality = Quality::fast) {
     TessellationOptions options;
     options.tolerance = input.tolerance;
     options.measure = measure;
+    options.quality = quality;
     options.max_triangles = input.max_triangles;
     options.progress = input.progress;
     Tessellation t = tessellate(input.surface, options);
@@ -23,6 +24,7 @@ StudyMesh tessellated(const StudyInput& input, Measure measure) {
 }  // namespace
 
 StudyMesh make_fast(const StudyInput& input) { return tessellated(input, Measure::geometric); }
+StudyMesh make_optimal(const StudyInput& input) { return tessellated(input, Measure::geometric, Quality::optimal); }
 StudyMesh make_parametric(const StudyInput& input) { return tessellated(input, Measure::parametric); }
 
 }  // namespace isoparm

@@ -34,11 +34,12 @@ and program are the same. Files there that do not are made again, with a note. N
 --surface S       one surface, or one patch of it, as in teapot/teapot#7; otherwise all surfaces that the scene draws
 --tolerances LIST as 1e-2,1e-3 in scene units or 1e-2rel,1e-3rel of the bounding-box diagonal; otherwise 10^-1.5 to 10^-5
                   of the diagonal in half decades. The pictures are of the middle one
---methods LIST    as uniform,fast; otherwise all:
+--methods LIST    as uniform,fast; otherwise all but optimal, which takes a hundred times the time of fast:
                   uniform     every patch on one n x n grid, with the smallest n that is proved
                   quadtree    a restricted quadtree on each patch, refined where the proof fails
                   fast        isoparm tessellate
                   parametric  isoparm tessellate --measure parametric
+                  optimal     isoparm tessellate --quality optimal
 --max-triangles N 4000000: a run that would need more is recorded as not reached, and the study goes on
 --size WxH        of the pictures, 1000x750
 --reproducible    no date in study.json and on the page (times are measured all the same)
@@ -57,10 +58,13 @@ std::vector<std::string> parts_of(const std::string& list) {
 }
 
 std::vector<std::string> chosen_methods(const Options& options) {
-    std::vector<std::string> names, chosen;
-    for (const StudyMethod& m : study_methods()) names.push_back(m.name);
+    std::vector<std::string> names, usual, chosen;
+    for (const StudyMethod& m : study_methods()) {
+        names.push_back(m.name);
+        if (!m.slow) usual.push_back(m.name);
+    }
     const auto list = options.value("--methods");
-    if (!list) return names;
+    if (!list) return usual;
     for (const std::string& name : parts_of(*list)) {
         if (!find_study_method(name))
             options.fail("--methods: found " + quoted(name) + ", expected one of: " + listed(names) + did_you_mean(name, names));
