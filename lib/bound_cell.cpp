@@ -39,13 +39,21 @@ double largest_form(const std::array<double, 3>& b, const std::array<double, 3>&
     return std::max(simplex_maximum(q[0] + b[0], q[1] + b[1], q[2] + b[2]), simplex_maximum(q[0] - b[0], q[1] - b[1], q[2] - b[2]));
 }
 
+/// DS[e_k] at the corners, were H equal to H(m) all over the triangle: linear in between. x: the mesh's edges, b = H(m)[e_k,e_k].
+std::array<Point, 3> along_edge(int k, const std::array<Point, 3>& x, const std::array<Point, 3>& b) {
+    const int after = kNext[k], last = kNext[after];
+    std::array<Point, 3> at;
+    at[k] = x[k] - 0.5 * b[k];
+    at[after] = x[k] + 0.5 * b[k];
+    at[last] = x[k] + 0.5 * (b[last] - b[after]);
+    return at;
+}
+
 /// An upper bound of the tangent of the angle between n and the normals of S: x the mesh's edges, b = H(m)[e_k,e_k], q what H strays from it
 /// along e_k, slack how far the mesh's corners are from S. `worst`: the edge along which the normal turns most.
 double turn_of(const Point& n, const std::array<Point, 3>& x, const std::array<Point, 3>& b, const std::array<double, 3>& q, const std::array<double, 3>& side, double slack,
                int& worst) {
-    // With H(m) in place of H, DS[e_0] and DS[e_1] are linear over the triangle: their values at its corners.
-    const std::array<Point, 3> first{x[0] - 0.5 * b[0], x[0] + 0.5 * b[0], x[0] + 0.5 * (b[2] - b[1])};
-    const std::array<Point, 3> second{x[1] + 0.5 * (b[0] - b[2]), x[1] - 0.5 * b[1], x[1] + 0.5 * b[1]};
+    const std::array<Point, 3> first = along_edge(0, x, b), second = along_edge(1, x, b);
     std::array<Point, 3> normal;
     for (int c = 0; c < 3; ++c) normal[c] = normalized(cross(first[c], second[c]));
     const double extent = std::max({side[0], side[1], side[2]});
@@ -57,7 +65,7 @@ double turn_of(const Point& n, const std::array<Point, 3>& x, const std::array<P
     for (int c = 0; c < 3; ++c) longest[0] = std::max(longest[0], length(first[c])), longest[1] = std::max(longest[1], length(second[c]));
     for (int k = 0; k < 2; ++k) off[k] = 0.5 * (q[0] + q[1] + q[2] + q[k]) + 2 * slack + kRounding * (side[k] + longest[k]);
     const double loose = safe(longest[0] * off[1] + longest[1] * off[0] + off[0] * off[1] + kRounding * longest[0] * longest[1]);
-    // Their cross product is quadratic, in the convex cone of its Bernstein coefficients.
+    // The cross product of DS[e_0] and DS[e_1] is quadratic, in the convex cone of its Bernstein coefficients.
     double turn = 0;
     for (int c = 0; c < 3; ++c)
         for (int d = c; d < 3; ++d) {
@@ -141,15 +149,7 @@ SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box, int par
 bool keeps_orientation(const Point& n, const std::array<Point, 3>& x, const std::array<Point, 3>& b, const std::array<double, 3>& q, const std::array<double, 3>& bend, double tilt) {
     const std::array<double, 3> side{length(x[0]), length(x[1]), length(x[2])};
     const int base = side[0] >= side[1] && side[0] >= side[2] ? 0 : side[1] >= side[2] ? 1 : 2, i = kNext[base], j = kNext[i];
-    // The derivative along edge k at corner c were H constant: x_k + H[corner - middle of the edge, e_k].
-    const auto at = [&](int k, int c) -> Point {
-        const int after = kNext[k], last = kNext[after];
-        if (c == k) return x[k] - 0.5 * b[k];
-        if (c == after) return x[k] + 0.5 * b[k];
-        return x[k] + 0.5 * (b[last] - b[after]);
-    };
-    std::array<Point, 3> along_i, along_j;
-    for (int c = 0; c < 3; ++c) along_i[c] = at(i, c), along_j[c] = at(j, c);
+    const std::array<Point, 3> along_i = along_edge(i, x, b), along_j = along_edge(j, x, b);
     double least = dot(n, cross(along_i[0], along_j[0]));
     for (int c = 0; c < 3; ++c) {
         const int d = kNext[c];

@@ -9,6 +9,7 @@
 #include "patches/tensor_bezier.h"
 #include "patches/transformed.h"
 #include "samples.h"
+#include "shapes.h"
 #include "tessellate.h"
 
 namespace isoparm::tests {
@@ -46,19 +47,6 @@ void expect_triangles_between_breaks(const Composite& surface, const Tessellatio
             for (const double b : vs) ASSERT_FALSE(v0 < b && b < v1);
         }
     }
-}
-
-Patch octant() {
-    const double s = std::sqrt(0.5);
-    return make_bezier_patch({{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
-                             {{1, s, 1}, {s, 0.5, s}, {1, s, 1}});
-}
-
-Composite sphere() {
-    Composite c;
-    for (int k = 0; k < 8; ++k)
-        c.push_back({"octant" + std::to_string(k), transformed(octant(), Transform::scale({k & 1 ? -1.0 : 1.0, k & 2 ? -1.0 : 1.0, k & 4 ? -1.0 : 1.0}))});
-    return c;
 }
 
 /// One bicubic patch whose boundary curves wave.

@@ -16,6 +16,7 @@
 #include "patches/tensor_bezier.h"
 #include "patches/transformed.h"
 #include "samples.h"
+#include "shapes.h"
 #include "topology.h"
 
 namespace isoparm::tests {
@@ -26,19 +27,6 @@ Tessellation tessellate_relative(const Composite& surface, double relative, Meas
     options.measure = measure;
     options.tolerance = relative * bounding_box(surface).diagonal();
     return tessellate(surface, options);
-}
-
-Patch octant() {
-    const double s = std::sqrt(0.5);
-    return make_bezier_patch({{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
-                             {{1, s, 1}, {s, 0.5, s}, {1, s, 1}});
-}
-
-Composite sphere() {
-    Composite c;
-    for (int k = 0; k < 8; ++k)
-        c.push_back({"octant" + std::to_string(k), transformed(octant(), Transform::scale({k & 1 ? -1.0 : 1.0, k & 2 ? -1.0 : 1.0, k & 4 ? -1.0 : 1.0}))});
-    return c;
 }
 
 /// Largest |S - L| at random points of every triangle, minus what was certified: never positive.
