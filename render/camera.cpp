@@ -145,7 +145,10 @@ double finest_pixel(const Camera& camera, const Bounds& box) {
         nearest =
             std::min(nearest, camera.depth({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
                                             corner & 4 ? box.high.z : box.low.z}));
-    return camera.pixel_size(std::max(nearest, 1e-3 * box.diagonal()));  // the eye may be inside the box
+    const double size = camera.pixel_size(std::max(nearest, 1e-3 * box.diagonal()));  // the eye may be inside the box
+    // Toward the corners of a perspective picture, moving along the view moves the projection as well: by the secant of the angle to the axis in all.
+    const double aspect = static_cast<double>(camera.width) / camera.height;
+    return camera.orthographic ? size : size / std::sqrt(1 + camera.half_height * camera.half_height * (1 + aspect * aspect));
 }
 
 }  // namespace isoparm

@@ -33,7 +33,7 @@ struct Camera {
 /// angle.
 Camera make_camera(const CameraSettings& settings, const std::vector<Point>& drawn, int width, int height, const Vec2& room = {});
 
-/// Size of a pixel where `box` is nearest to the camera, in scene units.
+/// How far, in scene units, any point of `box` in the picture may move at least before its projection moves by a pixel (to first order).
 double finest_pixel(const Camera& camera, const Bounds& box);
 
 }  // namespace isoparm

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "error.h"
 
@@ -143,11 +144,32 @@ TEST(Camera, RefusesWhatIsNoView) {
     EXPECT_THROW(make_camera(s, kCube, 64, 64), Error);
 }
 
+TEST(Camera, WhatMovesByTheFinestPixelMovesByAPixelInThePictureAtMost) {
+    CameraSettings s = looking({0, -3, 0}, {0, 0, 0});
+    s.fov = 90;
+    const Camera c = make_camera(s, {}, 200, 100);
+    const Bounds box{{-4, -1, -2}, {4, 1, 2}};
+    const double step = 1e-3 * finest_pixel(c, box);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> number(-1, 1);
+    double most = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const Point p{4 * number(random), number(random), 2 * number(random)};
+        const Vec2 at = c.project(p);
+        if (at.x < 0 || at.x > 200 || at.y < 0 || at.y > 100) continue;
+        const Vec2 moved = c.project(p + step * normalized(Point{number(random), number(random), number(random)}));
+        most = std::max(most, std::hypot(moved.x - at.x, moved.y - at.y) / 1e-3);
+    }
+    EXPECT_LE(most, 1.01);
+    EXPECT_GT(most, 0.7);
+}
+
 TEST(Camera, FinestPixelIsThatOfTheNearestCorner) {
     CameraSettings s = looking({0, -5, 0}, {0, 0, 0});
     s.fov = 90;
     const Camera c = make_camera(s, {}, 100, 100);
-    EXPECT_NEAR(finest_pixel(c, {{-1, -1, -1}, {1, 1, 1}}), 2 * 4 / 100.0, 1e-12);  // nearest depth 4
+    // The nearest depth is 4; the corners of the picture see at an angle whose secant is sqrt(3).
+    EXPECT_NEAR(finest_pixel(c, {{-1, -1, -1}, {1, 1, 1}}), 2 * 4 / 100.0 / std::sqrt(3.0), 1e-12);
     s.orthographic = 3;
     EXPECT_NEAR(finest_pixel(make_camera(s, {}, 100, 100), {{-1, -1, -1}, {1, 1, 1}}), 0.03, 1e-12);
 }
