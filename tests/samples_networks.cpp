@@ -64,15 +64,16 @@ PatchSample gordon_of_splines(Random& r, GordonBlend blend) {
     const Network net = spline_network(r, 2, 3);
     return gordon_over({net.b, {0, 1, 2, 3}, net.a, {0, 1, 2}}, blend);
 }
-/// A C1 hat of width 2; its pieces are chosen by the lower end of an interval, so it is right inside cells only.
+/// A C1 hat of width 2 over [0,2]; its pieces are chosen by the lower end of an interval, or one lane of a pack, so it is right inside
+/// cells only. At 2, where the domain ends, no new piece begins.
 struct Hat {
     double node;
     template <class S> S operator()(const S& t) const {
         const double inside = representative(t);
-        const bool beyond = inside > node + 1 || (inside == node + 1 && inside < 2);  // at 2 the domain ends: no new piece begins
-        if (beyond || inside < node - 1) return S(0.0);
-        const auto h = hermite_polynomials(S(inside >= node ? t - node : t - (node - 1)));
-        return inside >= node ? h[0] : h[3];
+        const auto reached = [&](double start) { return inside >= start && start < 2; };
+        if (reached(node + 1) || inside < node - 1) return S(0.0);
+        const auto h = hermite_polynomials(S(reached(node) ? t - node : t - (node - 1)));
+        return reached(node) ? h[0] : h[3];
     }
     Polynomial operator()(const Polynomial&) const { return Polynomial::nothing(); }
 };
