@@ -48,7 +48,7 @@ void FreeComposite::place(const RimPoint& p, double f, Point& x, std::array<Vec2
         const auto parameter = [&](std::uint32_t point) {
             return edge_parameter(surface_[u.member].patch, u.edge, patches_[u.member].corners()[points_[point].corner[use]].uv);
         };
-        const auto [low, high] = std::minmax(parameter(p.before), parameter(p.after));
+        const auto [low, high] = std::minmax({parameter(p.before), parameter(p.after)});
         uv[use] = refinement_.on_rim(u, f, x, low, high);
     }
 }

@@ -25,13 +25,17 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 [[noreturn]] void give_up(const Refinement& refinement, const TessellationOptions& options, double needed) {
     std::ostringstream text;
     text.precision(6);
-    text << "the tolerance " << to_text(options.tolerance) << " was not reached: ";
+    text << (options.normal_deviation > 0 ? "tolerance and normals were" : "the tolerance " + to_text(options.tolerance) + " was") << " not reached: ";
     if (needed > double(options.max_triangles))
-        text << "about " << needed << " triangles would be needed (" << needed * 120 / 1e9 << " GB), the budget is " << options.max_triangles;
+        text << "about " << std::ceil(needed) << " triangles would be needed (" << needed * 120 / 1e9 << " GB), the budget is " << options.max_triangles;
     else
         text << "no progress with " << refinement.triangle_count() << " triangles";
-    text << "; with " << refinement.triangle_count() << " triangles the certified error is " << refinement.worst_bound()
-         << ". Ask for a larger tolerance or raise the budget (--max-triangles).";
+    if (options.normal_deviation > 0 && refinement.worst_bound() == 0)
+        text << "; with " << refinement.triangle_count() << " triangles only the normals turn by more than " << options.normal_deviation
+             << " degrees. Ask for a larger angle (--normals) or raise the budget (--max-triangles).";
+    else
+        text << "; with " << refinement.triangle_count() << " triangles the certified error is " << refinement.worst_bound()
+             << ". Ask for a larger tolerance or raise the budget (--max-triangles).";
     throw Error(ErrorKind::budget, text.str());
 }
 
@@ -111,7 +115,7 @@ Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinemen
 double degrees_up(double tangent) { return std::atan(tangent) * (180 / M_PI) * (1 + 1e-14); }
 double tangent_down(double degrees) { return std::tan(degrees * (M_PI / 180)) * (1 - 1e-14); }
 
-void report_normals(const Refinement& refinement, Tessellation& result) {
+void report_normals(const Refinement& refinement, double limit, Tessellation& result) {
     double most = 0;
     for (const PatchMesh& p : refinement.patches())
         for (const PatchTriangle& t : p.triangles) {
@@ -120,6 +124,7 @@ void report_normals(const Refinement& refinement, Tessellation& result) {
             else ++result.normals_unproved;
         }
     result.normal_deviation = degrees_up(most);
+    if (most > limit) throw std::logic_error("a triangle turns by " + to_text(result.normal_deviation) + " degrees: please report this scene");
 }
 
 }  // namespace
@@ -160,6 +165,7 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     if (!(options.normal_deviation >= 0 && options.normal_deviation < 90))
         throw_input("found a normal deviation of " + to_text(options.normal_deviation) + " degrees, expected one from 0 (any) to below 90");
     if (options.normal_deviation > 0 && options.measure != Measure::geometric) throw_input("a limit of the normal deviation needs the geometric measure");
+    if (options.normal_deviation > 0 && options.quality != Quality::fast) throw_input("a limit of the normal deviation needs the fast quality");
     auto start = std::chrono::steady_clock::now();
     const double diagonal = surface.empty() ? 0 : bounding_box(surface).diagonal();
     // Fourth powers of lengths must stay in the range of doubles.
@@ -197,7 +203,7 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
         result.certified_error = std::max(result.certified_error, part.certified_error);
         result.surfaces.push_back({part.name, part.triangles.size(), part.certified_error, options.study ? optimal_triangles(surface[m].patch, options.tolerance) : 0});
     }
-    if (options.measure == Measure::geometric) report_normals(refinement, result);
+    if (options.measure == Measure::geometric) report_normals(refinement, turn, result);
     if (options.study) result.sampled_error = refinement.sampled_error();
     result.seconds_sample = seconds_since(start);
     return result;

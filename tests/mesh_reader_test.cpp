@@ -159,6 +159,7 @@ TEST(MeshReader, BadFilesSayWhere) {
         {"a.stl", "solid x\nfacet normal 0 0 1\nouter lop\n", "a.stl:3:7: found 'lop', expected \"loop\""},
         {"a.stl", "solid x\n", "expected \"facet\" or \"endsolid\""},
         {"a.stl", "solid x\nendsolid x\n", "found no triangle"},
+        {"a.stl", written_stl().replace(80, 1, std::string(1, '\2')), "found 2 facets in a file of 284 bytes, expected 184 bytes"},
         {"a.stl", std::string(84, '\377'), "found 4294967295 facets in a file of 84 bytes"},
     };
     for (const auto& [path, text, message] : cases) {

@@ -109,6 +109,9 @@ TEST(NormalDeviationOfAMesh, RefusesWhatIsNoAngle) {
     const Patch patch = patch_types().front().make(random).patch;
     EXPECT_THROW(mesh_of(patch, 1e-2, 90), Error);
     EXPECT_THROW(mesh_of(patch, 1e-2, -1), Error);
+    TessellationOptions options;
+    options.tolerance = 0.1, options.measure = Measure::geometric, options.normal_deviation = 5, options.quality = Quality::optimal;
+    EXPECT_THROW(tessellate({{"S", patch}}, options), Error);
 }
 
 }  // namespace

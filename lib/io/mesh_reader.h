@@ -17,6 +17,9 @@ struct MeshFile {
     std::size_t welded = 0;    // vertices of an STL file, which shares none, that are equal to another one and became one with it
 };
 
+/// Throws Error(usage) when the ending of a name is none of .ply, .obj or .stl, in capitals or not.
+void require_mesh_name(const std::string& path);
+
 /// `bytes` are the whole file; the ending of `path` says in which format: .ply, .obj or .stl, in capitals or not. Throws Error(usage)
 /// for another one, and Error(input) for bad data or when there is no triangle.
 MeshFile read_mesh(const std::string& bytes, const std::string& path);

@@ -73,9 +73,9 @@ MeshFile read_stl(const std::string& bytes, const std::string& path) {
     std::uint32_t facets = 0;
     if (bytes.size() >= kHeader) facets = ByteScanner(bytes, kHeader - 4, path, false).number<std::uint32_t>("the number of facets");
     const std::size_t size = kHeader + kFacet * std::size_t{facets};
-    // Binary files may begin with "solid" too: only the length tells. Bytes behind the facets are passed over.
+    // Binary files may begin with "solid" too: only the length tells. A few bytes behind the facets are passed over.
     const bool solid = bytes.rfind("solid", 0) == 0;
-    if (bytes.size() >= kHeader && (bytes.size() == size || (!solid && bytes.size() > size))) read_binary(bytes, path, facets, file);
+    if (bytes.size() >= kHeader && (bytes.size() == size || (!solid && bytes.size() > size && bytes.size() < size + kFacet))) read_binary(bytes, path, facets, file);
     else if (solid) read_text(bytes, path, file);
     else if (bytes.size() < kHeader) throw_input(path + ": found " + std::to_string(bytes.size()) + " bytes, expected \"solid\" or the 84 bytes that a binary STL file begins with");
     else throw_input(path + ": byte 80: found " + std::to_string(facets) + " facets in a file of " + std::to_string(bytes.size()) + " bytes, expected " + std::to_string(size) + " bytes for them");

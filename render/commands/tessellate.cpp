@@ -33,9 +33,9 @@ that patches share are found and share their vertices.
 --surface S       one surface, or one patch of it, as in teapot/teapot#7; otherwise all surfaces that the scene draws
 --tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal; otherwise the scene's
 --measure M       geometric (default): the distance of the two sets, both ways; parametric: of points at equal parameters,
-                  |S(u,v)-L(u,v)|, which is never less and needs more triangles
+                  |S(u,v)-L(u,v)|, which is never less
 --normals DEGREES the largest angle between a triangle and the surface's normals over it, below 90, proved as well; triangles smaller
-                  than the tolerance at poles and apexes are left out and counted (exit code 1). Not with parametric or .stl
+                  than the tolerance at poles and apexes are left out and counted (exit code 1). Not with parametric, optimal or .stl
 --quality Q       fast (default): bisection only; optimal: then vertices move, edges flip and vertices go, under the same proof, until
                   little is gained: a half to two thirds of the triangles, about a hundred times the time
 --vertices V      surface: vertices lie on the surface; free is not built yet
@@ -162,12 +162,13 @@ int run(const std::vector<std::string>& arguments) {
     TessellationOptions how;
     how.tolerance = tolerance - reserved;
     how.measure = measure == "parametric" ? Measure::parametric : Measure::geometric;
+    how.quality = quality == "optimal" ? Quality::optimal : Quality::fast;
     if (const auto degrees = options.number("--normals")) {
         if (!(*degrees > 0 && *degrees < 90)) options.fail("--normals: found " + to_text(*degrees) + ", expected degrees above 0 and below 90");
         if (measure == "parametric" || stl) options.fail("--normals: proved with --measure geometric, of a mesh in .ply or .obj");
+        if (how.quality != Quality::fast) options.fail("--normals: proved with --quality fast");
         how.normal_deviation = *degrees;
     }
-    how.quality = quality == "optimal" ? Quality::optimal : Quality::fast;
     if (const auto most = options.integer("--max-triangles", 1, 2'000'000'000)) how.max_triangles = static_cast<std::size_t>(*most);
     Tessellation result = [&] {
         ProgressBar bar("tessellating", options.quiet());

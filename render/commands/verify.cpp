@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <sstream>
 
@@ -197,6 +198,9 @@ int run(const std::vector<std::string>& arguments) {
     if (junctions && !(*junctions >= 0)) options.fail("--junctions: found " + to_text(*junctions) + ", expected a number that is not negative");
     const auto tolerance = options.tolerance();
 
+    require_mesh_name(r.path);
+    if (std::filesystem::exists(r.path) && !std::filesystem::is_regular_file(r.path) && !std::filesystem::is_directory(r.path))
+        throw Error(ErrorKind::io, r.path + ": found a device or pipe, expected a file");
     r.file = read_mesh(read_text_file(r.path, kMostBytes), r.path);
     r.welded = r.file.welded + (options.has("--weld") ? weld_equal_points(r.file.mesh) : 0);
     const Scene scene = options.scene_at(r.scene);
