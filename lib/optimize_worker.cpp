@@ -1,6 +1,7 @@
 #include "optimize_worker.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace isoparm {
 namespace {
@@ -130,6 +131,8 @@ void Worker::flip_around(Site site) {
 }
 
 double Worker::cost_of_removal(Site site) const {
+    const FreeCorner& c = all_.patches()[site.patch].corners()[site.corner];
+    if (c.freedom == Freedom::rim && !mine(c.rim_point)) return std::numeric_limits<double>::infinity();  // others may be changing what lies behind
     double most = 0;
     for (const Site& s : sites_of(site)) most = std::max(most, all_.patches()[s.patch].cost_of_removal(s.corner));
     return most;
