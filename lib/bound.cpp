@@ -36,6 +36,22 @@ struct Edge {
 
 }  // namespace
 
+double slack_of(const Patch& patch, const Vec2& p, const Point& x) {
+    const auto s = patch.enclose_point(p.x, p.y);
+    return rounding::length_up(mag(Interval(x.x) - s.x), mag(Interval(x.y) - s.y), mag(Interval(x.z) - s.z));
+}
+
+bool along_line(const Vec2& a, const Vec2& b, const std::vector<double>& us, const std::vector<double>& vs) {
+    const auto along = [](double x, double y, const std::vector<double>& lines) { return x == y && std::binary_search(lines.begin(), lines.end(), x); };
+    return along(a.x, b.x, us) || along(a.y, b.y, vs);
+}
+
+Box box_of(const std::array<Vec2, 3>& p) {
+    const auto [u0, u1] = std::minmax({p[0].x, p[1].x, p[2].x});
+    const auto [v0, v1] = std::minmax({p[0].y, p[1].y, p[2].y});
+    return {{u0, u1}, {v0, v1}};
+}
+
 double simplex_maximum(double a, double b, double c) {
     if (std::isnan(a) || std::isnan(b) || std::isnan(c)) return kInfinity;  // std::max would pass over one
     const double largest = std::max({a, b, c});
@@ -56,10 +72,9 @@ double simplex_maximum(double a, double b, double c) {
 }
 
 TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, const std::array<Point, 3>& points) {
-    const auto [u0, u1] = std::minmax({p[0].x, p[1].x, p[2].x});
-    const auto [v0, v1] = std::minmax({p[0].y, p[1].y, p[2].y});
-    const Enclosure e = patch.enclose({{u0, u1}, {v0, v1}});
-    const double ru = up(std::max(u1 - e.u, e.u - u0)), rv = up(std::max(v1 - e.v, e.v - v0));
+    const Box box = box_of(p);
+    const Enclosure e = patch.enclose(box);
+    const double ru = up(std::max(box.u.hi - e.u, e.u - box.u.lo)), rv = up(std::max(box.v.hi - e.v, e.v - box.v.lo));
     const auto frame = frame_at(e);
 
     std::array<Edge, 3> edges;

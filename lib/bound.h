@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <limits>
+#include <vector>
 
 #include "patch.h"
 
@@ -9,6 +10,15 @@ namespace isoparm {
 
 /// Which distance is proved: of points at equal parameters, or between the two sets, both ways.
 enum class Measure { parametric, geometric };
+
+/// At least the distance of x from the exact S(p).
+double slack_of(const Patch& patch, const Vec2& p, const Point& x);
+
+/// Does the segment lie along one of the lines u = us[i] or v = vs[j]? Both lists are sorted.
+bool along_line(const Vec2& a, const Vec2& b, const std::vector<double>& us, const std::vector<double>& vs);
+
+/// The box of a triangle of the domain.
+Box box_of(const std::array<Vec2, 3>& corners);
 
 struct CornerData {
     std::array<Vec2, 3> uv;       // parameters in the domain, counter-clockwise or all clockwise

@@ -18,8 +18,7 @@ constexpr std::array<int, 3> kNext{1, 2, 0};
 constexpr double kClear = 0.4, kVague = 0.8;
 /// Cells this much wider than a triangle are not tried.
 constexpr double kLarge = 10;
-/// Pieces of the triangle's own box along each direction, which are tried where they may bring it below the tolerance.
-constexpr int kPieces = 3;
+/// Pieces of the triangle's own box are tried where a bound is within this factor of the tolerance.
 constexpr double kNear = 2;
 
 Point middle(const Vec3<Interval>& x) { return {mid(x.x), mid(x.y), mid(x.z)}; }
@@ -82,11 +81,6 @@ Box half_of(const Box& box, int k) {
     return {k & 1 ? Interval(mu, box.u.hi) : Interval(box.u.lo, mu), k & 2 ? Interval(mv, box.v.hi) : Interval(box.v.lo, mv)};
 }
 
-Box box_of(const std::array<Vec2, 3>& p) {
-    const auto [u0, u1] = std::minmax({p[0].x, p[1].x, p[2].x});
-    const auto [v0, v1] = std::minmax({p[0].y, p[1].y, p[2].y});
-    return {{u0, u1}, {v0, v1}};
-}
 bool inside(const Box& box, const Box& of) { return box.u.lo >= of.u.lo && box.u.hi <= of.u.hi && box.v.lo >= of.v.lo && box.v.hi <= of.v.hi; }
 
 /// The ranges over a box become the hulls of those over pieces of it, pieces outside the domain left out: intervals that overestimate
@@ -229,18 +223,17 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     const double s_ = triangle.slack;
     result.unit = n;
     result.tilt = safe((8.1 * s_ * (longest + s_) + 33 * 0x1p-53 * longest * longest) / twice_area + 4 * 0x1p-53);
-    result.turn = turn_of(n, x, b, q, side, s_, result.worst_turn);
+    if (!least) result.turn = turn_of(n, x, b, q, side, s_, result.worst_turn);
     std::array<double, 4> along;
     for (int k = 0; k < 4; ++k) along[k] = std::max(0.0, std::fabs(dot(n, s.t[k])) + (least ? -s.t_rad[k] : s.t_rad[k]) + 4 * 0x1p-53 * s.t_size[k]);
     const std::array<double, 3> qn = stray(along), bn{dot(n, b[0]), dot(n, b[1]), dot(n, b[2])};
     result.worst_edge = choose_edge({std::fabs(bn[0]) + qn[0], std::fabs(bn[1]) + qn[1], std::fabs(bn[2]) + qn[2]});
     // Quiet: lenses around the edges meet at corners only, and the map to the plane of L keeps its orientation.
-    std::array<Point, 3> inward;  // in the plane, across edge k
-    std::array<double, 3> across;  // at least |inward_k . H[e_k,e_k]|
+    std::array<double, 3> across;  // at least |inward . H[e_k,e_k]|
     bool quiet = result.tilt <= 1e-3;
     for (int k = 0; k < 3; ++k) {
-        inward[k] = cross(n, x[k]) / side[k];
-        across[k] = safe(std::fabs(dot(inward[k], b[k])) + q[k] + 2 * result.tilt * bend[k]);
+        const Point inward = cross(n, x[k]) / side[k];  // in the plane
+        across[k] = safe(std::fabs(dot(inward, b[k])) + q[k] + 2 * result.tilt * bend[k]);
         const double lens = (across[k] + 0.32 * (std::fabs(bn[k]) + qn[k] + result.tilt * bend[k])) * std::max(side[kNext[k]], side[kNext[kNext[k]]]) * side[k];
         quiet = quiet && bend[k] <= side[k] && lens <= 0.39 * twice_area * (2 * side[k] - bend[k]);
     }
@@ -301,7 +294,7 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
     TriangleBound sharpest = bound_triangle(model, triangle, measure);
     if (sharpest.own(measure) <= tolerance || bound_triangle(model, triangle, measure, true).own(measure) > (1 - kClear) * sharpest.own(measure)) return sharpest;
     if (sharpest.own(measure) <= kNear * tolerance) {
-        const TriangleBound finer = bound_triangle(SecondDerivatives(patch, box, kPieces), triangle, measure);
+        const TriangleBound finer = bound_triangle(SecondDerivatives(patch, box, SecondDerivatives::pieces), triangle, measure);
         if (finer.own(measure) < sharpest.own(measure)) sharpest = finer;
         if (sharpest.own(measure) <= tolerance) return sharpest;
     }

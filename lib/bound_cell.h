@@ -22,6 +22,8 @@ struct SecondDerivatives {
     std::array<double, 3> h_size{};        // at least |h| + |t| times the half-widths: what rounding is relative to
     bool bounded = false;                  // false: some of that has no bound, nothing else is set
 
+    static constexpr int pieces = 3;  // along each direction, of the sharpest: more gain little
+
     SecondDerivatives() = default;
     /// Third derivatives are enclosed over parts x parts pieces of the box, which sharpens what intervals overestimate.
     SecondDerivatives(const Patch& patch, const Box& box, int parts = 1);

@@ -98,20 +98,18 @@ void number_loops(std::size_t points, MeshDefects& d) {
     }
 }
 
-/// Segments as triangles with two equal corners.
-TriangleMesh segments(const TriangleMesh& mesh, const std::vector<MeshDefects::Edge>& edges) {
-    TriangleMesh s;
-    for (const auto& [a, b] : edges) {
-        const auto n = static_cast<std::uint32_t>(s.points.size());
-        s.points.push_back(mesh.points[a]), s.points.push_back(mesh.points[b]);
-        s.triangles.push_back({n, n + 1, n + 1});
-    }
-    return s;
+/// One more segment, as a triangle with two equal corners.
+void add_segment(TriangleMesh& segments, const Point& a, const Point& b) {
+    const auto n = static_cast<std::uint32_t>(segments.points.size());
+    segments.points.push_back(a), segments.points.push_back(b);
+    segments.triangles.push_back({n, n + 1, n + 1});
 }
 
 void find_junctions(const TriangleMesh& mesh, double within, MeshDefects& d) {
     if (d.open_edges.empty()) return;
-    const TriangleTree tree(segments(mesh, d.open_edges));
+    TriangleMesh edges;
+    for (const auto& [a, b] : d.open_edges) add_segment(edges, mesh.points[a], mesh.points[b]);
+    const TriangleTree tree(edges);
     std::vector<std::uint32_t> ends;
     for (const auto& [a, b] : d.open_edges) ends.push_back(a), ends.push_back(b);
     std::sort(ends.begin(), ends.end());
@@ -151,11 +149,7 @@ MeshDefects find_defects(const TriangleMesh& mesh, double junction_distance) {
 std::size_t count_holes(const TriangleMesh& mesh, const MeshDefects& defects, const std::vector<std::array<Point, 2>>& border, double distance) {
     if (border.empty()) return defects.boundary_loops;
     TriangleMesh lines;
-    for (const auto& [a, b] : border) {
-        const auto n = static_cast<std::uint32_t>(lines.points.size());
-        lines.points.push_back(a), lines.points.push_back(b);
-        lines.triangles.push_back({n, n + 1, n + 1});
-    }
+    for (const auto& [a, b] : border) add_segment(lines, a, b);
     const TriangleTree tree(lines);
     std::vector<char> hole(defects.boundary_loops, 0);
     for (std::size_t e = 0; e < defects.open_edges.size(); ++e) {

@@ -32,31 +32,25 @@ int edge_of(const MeshPart& part, int k) { return part.flipped ? 2 - k : k; }
 std::vector<double> slacks(const Patch& patch, const Mesh& mesh, const MeshPart& part) {
     std::vector<double> slack(part.uv.size());
     for_each_index(slack.size(), [&](std::size_t i) {
-        const auto s = patch.enclose_point(part.uv[i].x, part.uv[i].y);
-        const Point& x = mesh.positions[part.vertex[i]];
-        slack[i] = rounding::length_up(mag(Interval(x.x) - s.x), mag(Interval(x.y) - s.y), mag(Interval(x.z) - s.z));
+        slack[i] = slack_of(patch, part.uv[i], mesh.positions[part.vertex[i]]);
     });
     return slack;
 }
 
-/// Is the edge of the domain on a break, where the surface may jump by rounding?
-bool on_line(const Vec2& a, const Vec2& b, const std::vector<double>& us, const std::vector<double>& vs) {
-    return (a.x == b.x && std::binary_search(us.begin(), us.end(), a.x)) || (a.y == b.y && std::binary_search(vs.begin(), vs.end(), a.y));
-}
+std::uint64_t segment(std::uint32_t a, std::uint32_t b) { return (std::uint64_t(std::min(a, b)) << 32) | std::max(a, b); }
 
 /// Segments that are left out and are no edge of any triangle: nothing in the mesh is there for them.
 std::unordered_set<std::uint64_t> lost_segments(const Mesh& mesh) {
-    const auto name = [](std::uint32_t a, std::uint32_t b) { return (std::uint64_t(std::min(a, b)) << 32) | std::max(a, b); };
     std::unordered_set<std::uint64_t> lost;
     for (const MeshPart& part : mesh.parts)
         for (const auto& t : part.left_out)
-            for (int k = 0; k < 3; ++k) lost.insert(name(part.vertex[t[k]], part.vertex[t[(k + 1) % 3]]));
+            for (int k = 0; k < 3; ++k) lost.insert(segment(part.vertex[t[k]], part.vertex[t[(k + 1) % 3]]));
     if (lost.empty()) return lost;
     for (const MeshPart& part : mesh.parts)
         for (const auto& t : part.triangles)
             for (int k = 0; k < 3; ++k) {
                 const auto a = part.vertex[t[k]], b = part.vertex[t[(k + 1) % 3]];
-                lost.erase(name(a, b)), lost.erase(name(a, a)), lost.erase(name(b, b));
+                lost.erase(segment(a, b)), lost.erase(segment(a, a)), lost.erase(segment(b, b));
             }
     return lost;
 }
@@ -166,7 +160,7 @@ std::optional<MeshProof> MeshProver::operator()(const Mesh& mesh, double toleran
                 const int edge = edge_of(part, k);
                 const auto other = beside[i][k];
                 if (other == kNobody ||
-                    on_line(part.uv[c[edge]], part.uv[c[(edge + 1) % 3]], cells_[part.member].us, cells_[part.member].vs))
+                    along_line(part.uv[c[edge]], part.uv[c[(edge + 1) % 3]], cells_[part.member].us, cells_[part.member].vs))
                     continue;
                 neighbours[edge] = &proof.bounds[other];
                 slack = std::max(slack, slack_of(other));
@@ -175,10 +169,7 @@ std::optional<MeshProof> MeshProver::operator()(const Mesh& mesh, double toleran
             bounds[i] = rounding::up(geometric_bound(own, neighbours) + slack);
             to_split[i] = worst;
             if (i < n || lost.empty()) return;
-            const auto is_lost = [&](int k) {
-                const auto a = part.vertex[c[k]], b = part.vertex[c[(k + 1) % 3]];
-                return lost.count((std::uint64_t(std::min(a, b)) << 32) | std::max(a, b)) > 0;
-            };
+            const auto is_lost = [&](int k) { return lost.count(segment(part.vertex[c[k]], part.vertex[c[(k + 1) % 3]])) > 0; };
             if (is_lost(0) || is_lost(1) || is_lost(2)) bounds[i] = parametric[i] = kInfinity;
         });
         for (std::size_t i = 0; i < bounds.size(); ++i)

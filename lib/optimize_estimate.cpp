@@ -21,9 +21,8 @@ double Estimate::with(const std::array<const Estimate*, 3>& neighbours) const {
 Estimate estimate(const SecondDerivatives& s, const Places& places) {
     Estimate result;
     const auto& p = places.uv;
-    const auto [u0, u1] = std::minmax({p[0].x, p[1].x, p[2].x});
-    const auto [v0, v1] = std::minmax({p[0].y, p[1].y, p[2].y});
-    const double ru = 0.5 * (u1 - u0), rv = 0.5 * (v1 - v0), du = 0.5 * (u0 + u1) - s.u, dv = 0.5 * (v0 + v1) - s.v;
+    const Box box = box_of(p);
+    const double ru = 0.5 * (box.u.hi - box.u.lo), rv = 0.5 * (box.v.hi - box.v.lo), du = 0.5 * (box.u.lo + box.u.hi) - s.u, dv = 0.5 * (box.v.lo + box.v.hi) - s.v;
     std::array<Point, 3> x;
     std::array<double, 3> side;
     for (int k = 0; k < 3; ++k) x[k] = places.x[(k + 1) % 3] - places.x[k], side[k] = length(x[k]);

@@ -4,12 +4,6 @@
 #include "optimize_patch.h"
 
 namespace isoparm {
-namespace {
-
-/// Pieces of a triangle's box along each direction, over which the sharpest proof encloses third derivatives.
-constexpr int kPieces = 3;
-
-}  // namespace
 
 bool FreePatch::prove(std::uint32_t i) {
     FreeTriangle& t = triangles_[i];
@@ -28,9 +22,7 @@ void FreePatch::sharpen(std::uint32_t i) {
     FreeTriangle& t = triangles_[i];
     t.sharp = true;
     const Places p = places(t.corner);
-    const auto [u0, u1] = std::minmax({p.uv[0].x, p.uv[1].x, p.uv[2].x});
-    const auto [v0, v1] = std::minmax({p.uv[0].y, p.uv[1].y, p.uv[2].y});
-    const TriangleBound b = bound_triangle(SecondDerivatives(patch_, {{u0, u1}, {v0, v1}}, kPieces), p.corners(), measure_);
+    const TriangleBound b = bound_triangle(SecondDerivatives(patch_, box_of(p.uv), SecondDerivatives::pieces), p.corners(), measure_);
     if (!b.quiet) return;
     t.proof.normal = std::min(t.proof.normal, b.normal);
     for (int k = 0; k < 3; ++k) t.proof.across[k] = std::min(t.proof.across[k], b.across[k]);
@@ -63,8 +55,7 @@ bool FreePatch::certify() {
     for (const auto& [c, old] : old_corners_) {
         FreeCorner& corner = corners_[c];
         if (!corner.live() || (corner.uv.x == old.uv.x && corner.uv.y == old.uv.y)) continue;
-        const auto s = patch_.enclose_point(corner.uv.x, corner.uv.y);
-        corner.slack = rounding::length_up(mag(Interval(corner.x.x) - s.x), mag(Interval(corner.x.y) - s.y), mag(Interval(corner.x.z) - s.z));
+        corner.slack = slack_of(patch_, corner.uv, corner.x);
     }
     for (const auto& [i, old] : old_triangles_) {
         const FreeTriangle& t = triangles_[i];

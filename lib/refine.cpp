@@ -63,9 +63,7 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
     mesh.slack.resize(mesh.uv.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(first, mesh.uv.size(), 64), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const auto s = surface_[member].patch.enclose_point(mesh.uv[i].x, mesh.uv[i].y);
-            const Point& x = positions_[mesh.vertex[i]];
-            mesh.slack[i] = rounding::length_up(mag(Interval(x.x) - s.x), mag(Interval(x.y) - s.y), mag(Interval(x.z) - s.z));
+            mesh.slack[i] = slack_of(surface_[member].patch, mesh.uv[i], positions_[mesh.vertex[i]]);
         }
     });
 }
@@ -117,8 +115,7 @@ bool Refinement::turns_little(const PatchMesh& mesh, const PatchTriangle& t) con
 }
 
 bool PatchMesh::on_break(const PatchEdge& e) const {
-    const auto along = [](double a, double b, const std::vector<double>& breaks) { return a == b && std::binary_search(breaks.begin(), breaks.end(), a); };
-    return along(uv[e.a].x, uv[e.b].x, breaks_u) || along(uv[e.a].y, uv[e.b].y, breaks_v);
+    return along_line(uv[e.a], uv[e.b], breaks_u, breaks_v);
 }
 
 double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const {

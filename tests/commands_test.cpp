@@ -1,28 +1,12 @@
 // The real program from its command line: results, exit codes, files.
 #include <gtest/gtest.h>
-#include <json/json.h>
 
 #include <sstream>
 
-#include "run_program.h"
+#include "expect_program.h"
 
 namespace isoparm::test {
 namespace {
-
-std::string scene(const std::string& name) { return "'" + source_folder() + "/scenes/" + name + ".json'"; }
-
-Json::Value parsed(const std::string& text) {
-    Json::Value v;
-    std::istringstream in(text);
-    std::string errors;
-    EXPECT_TRUE(Json::parseFromStream(Json::CharReaderBuilder(), in, &v, &errors)) << errors << text;
-    return v;
-}
-void expect(const std::string& arguments, int code, const std::string& message) {
-    const Outcome o = run(arguments);
-    EXPECT_EQ(o.code, code) << arguments << "\n" << o.err;
-    EXPECT_NE((o.out + o.err).find(message), std::string::npos) << arguments << "\n" << o.out << o.err;
-}
 
 TEST(Commands, HelpAndVersion) {
     expect("--help", 0, "tessellate");

@@ -1,28 +1,13 @@
 // isoparm verify from the command line: meshes of this and other programs, limits, exit codes.
 #include <gtest/gtest.h>
-#include <json/json.h>
 
 #include <filesystem>
-#include <sstream>
 
-#include "run_program.h"
+#include "expect_program.h"
 
 namespace isoparm::test {
 namespace {
 
-std::string scene(const std::string& name) { return "'" + source_folder() + "/scenes/" + name + ".json'"; }
-Json::Value parsed(const std::string& text) {
-    Json::Value v;
-    std::istringstream in(text);
-    std::string errors;
-    EXPECT_TRUE(Json::parseFromStream(Json::CharReaderBuilder(), in, &v, &errors)) << errors << text;
-    return v;
-}
-void expect(const std::string& arguments, int code, const std::string& message) {
-    const Outcome o = run(arguments);
-    EXPECT_EQ(o.code, code) << arguments << "\n" << o.out << o.err;
-    EXPECT_NE((o.out + o.err).find(message), std::string::npos) << arguments << "\n" << o.out << o.err;
-}
 const char* const kOctahedron = "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\nf 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
 
 TEST(VerifyProgram, OwnMeshesInEveryFormatKeepTheirTolerance) {

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <charconv>
 #include <cstring>
-#include <filesystem>
 #include <ostream>
 #include <sstream>
 
 #include "error.h"
 #include "io/atomic_file.h"
+#include "io/extension.h"
 
 namespace isoparm {
 
@@ -160,8 +159,7 @@ std::size_t write_stl(std::ostream& out, const Mesh& mesh) {
 }
 
 void write_mesh(const std::string& path, const Mesh& mesh, const std::string& comment) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = extension_of(path);
     if (extension == ".ply") write_atomically(path, [&](std::ostream& out) { write_ply(out, mesh, comment); });
     else if (extension == ".obj") write_atomically(path, [&](std::ostream& out) { write_obj(out, mesh, comment); });
     else if (extension == ".stl") write_atomically(path, [&](std::ostream& out) { write_stl(out, mesh); });

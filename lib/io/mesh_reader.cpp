@@ -1,23 +1,10 @@
 #include "io/mesh_reader.h"
 
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
-
 #include "error.h"
+#include "io/extension.h"
 #include "io/mesh_scanner.h"
 
 namespace isoparm {
-
-namespace {
-
-std::string extension_of(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
-}  // namespace
 
 void require_mesh_name(const std::string& path) {
     const std::string extension = extension_of(path);

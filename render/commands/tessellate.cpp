@@ -11,6 +11,7 @@
 #include "commands/selection.h"
 #include "error.h"
 #include "io/atomic_file.h"
+#include "io/extension.h"
 #include "io/mesh_files.h"
 #include "isoparm_version.h"
 #include "json_text.h"
@@ -47,12 +48,6 @@ that patches share are found and share their vertices.
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
 --quiet           no messages; --threads N  at most N threads: the mesh is the same for every N
 )";
-
-std::string extension_of(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 /// Fails now rather than after the work.
 void check_output(const std::string& path, const Options& options) {
