@@ -216,8 +216,12 @@ Scene read_scene(const Json& root, const std::map<std::string, double>& override
         const bool curves = key[0] == 'c';
         for (const Json& definition : list->children()) {
             const std::string& name = definition.key();
-            if (curves) scene.curves.emplace_back(name, builder.named_curve(definition).curve);
-            else scene.surfaces.push_back(finished(name, definition.find("type")->string(), builder.named_surface(definition)));
+            if (curves) {
+                scene.curves.emplace_back(name, builder.named_curve(definition).curve);
+                continue;
+            }
+            BuiltSurface surface = builder.named_surface(definition);  // which refuses a definition without a type
+            scene.surfaces.push_back(finished(name, definition.find("type")->string(), std::move(surface)));
         }
     }
     if (const auto objects = root.find("objects")) {

@@ -176,7 +176,7 @@ TEST(Geometric, IsNotMoreThanParametric) {
     for (const auto& type : patch_types()) {
         Random random(17);
         const Composite surface{{"S", type.make(random).patch}};
-        const double tolerance = 0.01 * bounding_box(surface).diagonal();
+        const double tolerance = 0.02 * bounding_box(surface).diagonal();
         const Topology topology = find_topology(surface, 1e-6 * tolerance);
         Refinement refinement(surface, topology, tolerance, Measure::geometric);
         for (int round = 0; round < 100 && !(refinement.bound_and_mark() && !refinement.mark_with_neighbours()); ++round) refinement.split_marked();

@@ -60,7 +60,7 @@ TEST(Study, EveryMethodProvesItsToleranceAndSeesNoLargerError) {
     for (const Sample& s : samples())
         for (const StudyMethod& m : study_methods()) {
             SCOPED_TRACE(s.name + ", " + m.name);
-            const double tolerance = 5e-3 * bounding_box(s.surface).diagonal();
+            const double tolerance = 1e-2 * bounding_box(s.surface).diagonal();
             const StudyResult result = run_study(m, {s.surface, tolerance});
             const StudyRun& r = result.run;
             ASSERT_TRUE(r.reached) << r.reason;
