@@ -40,6 +40,8 @@ std::vector<Case> evaluation_cases();
 std::vector<Case> batch_cases();
 /// Certified meshes of scenes at relative tolerances 1e-2 ... 1e-5.
 std::vector<Case> tessellation_cases();
+/// OpenCASCADE's BRepMesh and certified meshes of the same surfaces at the same tolerances; none where it was not found.
+std::vector<Case> peer_cases();
 /// What is proved over what is true, for the triangles of a grid.
 std::vector<Case> tightness_cases();
 /// Primary rays beside bare Embree, shaded points, complete pictures.

@@ -144,7 +144,7 @@ void measure(const std::vector<Case>& cases, const Arguments& arguments, Facts& 
 
 int bench(const Arguments& arguments) {
     std::vector<Case> cases;
-    for (auto make : {evaluation_cases, batch_cases, tightness_cases, tessellation_cases, ray_cases})
+    for (auto make : {evaluation_cases, batch_cases, tightness_cases, tessellation_cases, peer_cases, ray_cases})
         for (Case& c : make())
             if (std::regex_search(full_name(c), arguments.filter)) cases.push_back(std::move(c));
     if (arguments.list) {

@@ -80,3 +80,11 @@ foreach(target OpenImageIO::OpenImageIO OpenImageIO::OpenImageIO_Util)
         endif()
     endforeach()
 endforeach()
+
+# Optional: OpenCASCADE, a tessellator to compare with (its own CMake files want all of its packages installed).
+find_path(OpenCASCADE_INCLUDE_DIR BRepMesh_IncrementalMesh.hxx PATH_SUFFIXES opencascade)
+mark_as_advanced(OpenCASCADE_INCLUDE_DIR)
+foreach(library TKMesh TKTopAlgo TKBRep TKGeomBase TKG3d TKG2d TKMath TKernel)
+    find_library(OpenCASCADE_${library} ${library})
+    mark_as_advanced(OpenCASCADE_${library})
+endforeach()

@@ -5,6 +5,9 @@ install(TARGETS isoparm_lib EXPORT isoparmTargets)
 if(TARGET isoparm)
     install(TARGETS isoparm)
     install(TARGETS isoparm_image DESTINATION lib/isoparm)  # where the program looks: ../lib/isoparm, on every system
+    if(TARGET isoparm_opencascade)
+        install(TARGETS isoparm_opencascade DESTINATION lib/isoparm)
+    endif()
 endif()
 
 install(DIRECTORY lib/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isoparm FILES_MATCHING PATTERN "*.h")

@@ -57,6 +57,7 @@ public:
         virtual void frames(std::size_t n, const double* u, const double* v, PointFrame* out) const = 0;
         /// As Patch::frames(u, v, out), sizes checked.
         virtual void frame_arrays(Isa isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const = 0;
+        virtual std::vector<BezierCell> bezier_cells() const = 0;
         virtual Enclosure enclose(const Box& box) const = 0;
         /// Encloses every position over the box; cheaper than enclose().
         virtual Vec3<Interval> enclose_points(const Box& box) const = 0;
@@ -82,6 +83,9 @@ public:
     /// domain; all arrays have u's size, else throws std::invalid_argument. No allocation for polynomial and rational surfaces. This
     /// machine must run `isa`; there is no reason to give it but to measure.
     void frames(std::span<const double> u, std::span<const double> v, const FrameArrays& out, Isa isa = chosen_isa()) const;
+    /// The cells between breaks, u-major, as Bezier patches, up to rounding; on the triangular domain one, over the unit square. None
+    /// where a cell is not polynomial or rational with positive weights, of degree <= 7 both ways.
+    std::vector<BezierCell> bezier_cells() const { return impl_->bezier_cells(); }
     Enclosure enclose(const Box& box) const { return impl_->enclose(box); }
     Vec3<Interval> enclose_points(const Box& box) const { return impl_->enclose_points(box); }
     /// Encloses the exact position at (u,v).

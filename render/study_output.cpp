@@ -6,6 +6,7 @@
 #include "io/atomic_file.h"
 #include "json.h"
 #include "json_text.h"
+#include "peer.h"
 #include "provenance.h"
 #include "study_page.h"
 #include "study_plots.h"
@@ -50,7 +51,7 @@ void write_json(std::ostream& out, const Study& study, const Facts& facts, const
     for (std::size_t i = 0; i < study.methods.size(); ++i) {
         const MethodOrders o = fitted_orders(rows, study.methods[i]);
         out << (i ? ",\n  " : "\n  ") << "{\"name\": " << json_text(study.methods[i])
-            << ", \"summary\": " << json_text(std::string(find_study_method(study.methods[i])->summary))
+            << ", \"summary\": " << json_text(std::string(find_any_study_method(study.methods[i])->summary))
             << ",\n   \"order\": {\"certified\": " << order_json(o.certified) << ", \"sampled\": " << order_json(o.sampled) << "}}";
     }
     out << "],\n \"runs\": [";

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "peer.h"
 #include "study_plots.h"
 
 namespace isoparm {
@@ -121,7 +122,7 @@ std::string orders(const StudyFacts& facts, const std::vector<StudyRow>& rows) {
         "<th scope=\"col\" class=\"number\">order, sampled</th><th scope=\"col\" class=\"number\">points</th></tr></thead><tbody>\n";
     for (const std::string& m : facts.methods) {
         const MethodOrders o = fitted_orders(rows, m);
-        const StudyMethod* method = find_study_method(m);
+        const StudyMethod* method = find_any_study_method(m);
         text += "<tr><td>" + escaped(m) + "</td><td>" + (method ? escaped(method->summary) : "") + "</td><td class=\"number\">" +
                 (o.certified ? brief(o.certified->order) : "") + "</td><td class=\"number\">" + (o.sampled ? brief(o.sampled->order) : "") +
                 "</td><td class=\"number\">" + (o.certified ? std::to_string(o.certified->points) : "") + "</td></tr>\n";

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "palette.h"
+#include "peer.h"
 
 namespace isoparm {
 namespace {
@@ -20,7 +21,7 @@ double ratio_of(const StudyRun& r) { return r.ratio(); }
 /// A style belongs to a method's place among all that the program knows.
 std::size_t style_of(const std::string& method) {
     std::size_t n = 0;
-    for (const StudyMethod& m : study_methods())
+    for (const StudyMethod& m : all_study_methods())
         if (method == m.name)
             break;
         else

@@ -130,6 +130,17 @@ TEST_P(BatchLaw, AgreesWithTheFormula) {
         }
     }
 }
+
+TEST_P(BatchLaw, BezierCellsAreTheSurface) {
+    Random r(5);
+    const double size = size_of_sample(patch_);
+    for (const BezierCell& cell : patch_.bezier_cells())
+        for (int n = 0; n < 20; ++n) {
+            double u = r.number(cell.u0, cell.u1), v = r.number(cell.v0, cell.v1);
+            if (patch_.domain() == Domain::triangle && u + v > 1) u = 1 - u, v = 1 - v;
+            EXPECT_LE(distance(cell(u, v), patch_.point(u, v)), 1e-12 * size) << u << ", " << v;
+        }
+}
 INSTANTIATE_TEST_SUITE_P(All, BatchLaw, ::testing::ValuesIn(patch_types()), name_of);
 
 Grid<Point> net_at(Random& r, double offset) {
@@ -200,6 +211,16 @@ TEST(Batch, PolesAndApexesHaveNoNaN) {
         for (int k = 0; k < 9; ++k)
             for (std::size_t i = 0; i < u.size(); ++i) EXPECT_TRUE(std::isfinite(x.at(k, i)));
     }
+}
+
+TEST(Batch, BezierCellsOfBezierPatchesAreTheirPoles) {
+    Random r(6);
+    const Grid<Point> net = net_at(r, 0);
+    const std::vector<BezierCell> cells = make_bezier_patch(net).bezier_cells();
+    ASSERT_EQ(cells.size(), 1u);
+    ASSERT_EQ(cells[0].poles.size(), net.size() * net[0].size());
+    for (std::size_t k = 0; k < cells[0].poles.size(); ++k) EXPECT_LT(distance(cells[0].poles[k], net[k / net[0].size()][k % net[0].size()]), 1e-13);
+    EXPECT_TRUE(cells[0].weights.empty());
 }
 
 TEST(Batch, RefusesArraysOfOtherSizes) {

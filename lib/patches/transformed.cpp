@@ -43,6 +43,12 @@ public:
         move(out.position, [&](const Point& p) { return map_.point(p); });
         for (const auto* d : {&out.du, &out.dv}) move(*d, [&](const Point& p) { return map_.vector(p); });
     }
+    std::vector<BezierCell> bezier_cells() const override {
+        auto cells = patch_.bezier_cells();
+        for (BezierCell& cell : cells)
+            for (Point& p : cell.poles) p = map_.point(p);
+        return cells;
+    }
     Enclosure enclose(const Box& box) const override {
         Enclosure e = patch_.enclose(box);
         e.centre = moved(map_, e.centre);

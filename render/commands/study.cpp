@@ -12,6 +12,7 @@
 #include "error.h"
 #include "heat_map.h"
 #include "json.h"
+#include "peer.h"
 #include "progress.h"
 #include "provenance.h"
 #include "sha256.h"
@@ -34,12 +35,14 @@ and program are the same. Files there that do not are made again, with a note. N
 --surface S       one surface, or one patch of it, as in teapot/teapot#7; otherwise all surfaces that the scene draws
 --tolerances LIST as 1e-2,1e-3 in scene units or 1e-2rel,1e-3rel of the bounding-box diagonal; otherwise 10^-1.5 to 10^-5
                   of the diagonal in half decades. The pictures are of the middle one
---methods LIST    as uniform,fast; otherwise all but optimal, which takes a hundred times the time of fast:
+--methods LIST    as uniform,fast; otherwise all but the last two, which take a hundred times the time of fast:
                   uniform     every patch on one n x n grid, with the smallest n that is proved
                   quadtree    a restricted quadtree on each patch, refined where the proof fails
                   fast        isoparm tessellate
                   parametric  isoparm tessellate --measure parametric
                   optimal     isoparm tessellate --quality optimal
+                  opencascade OpenCASCADE's BRepMesh, with the largest deflection whose mesh is proved to keep the
+                              tolerance; where it was found when isoparm was built
 --max-triangles N 4000000: a run that would need more is recorded as not reached, and the study goes on
 --size WxH        of the pictures, 1000x750
 --reproducible    no date in study.json and on the page (times are measured all the same)
@@ -59,14 +62,14 @@ std::vector<std::string> parts_of(const std::string& list) {
 
 std::vector<std::string> chosen_methods(const Options& options) {
     std::vector<std::string> names, usual, chosen;
-    for (const StudyMethod& m : study_methods()) {
+    for (const StudyMethod& m : all_study_methods()) {
         names.push_back(m.name);
         if (!m.slow) usual.push_back(m.name);
     }
     const auto list = options.value("--methods");
     if (!list) return usual;
     for (const std::string& name : parts_of(*list)) {
-        if (!find_study_method(name))
+        if (!find_any_study_method(name))
             options.fail("--methods: found " + quoted(name) + ", expected one of: " + listed(names) + did_you_mean(name, names));
         if (std::find(chosen.begin(), chosen.end(), name) == chosen.end()) chosen.push_back(name);
     }
@@ -167,14 +170,14 @@ public:
 private:
     std::string key(const std::string& method, double tolerance) const {
         return sha256(program_version() + "\n" + study_.geometry_hash + "\n" + method + "\n" + to_text(tolerance) + "\n" +
-                      std::to_string(study_.max_triangles));
+                      std::to_string(study_.max_triangles) + (method == peer_study_method.name ? "\n" + Peer::version() : ""));
     }
 
     StudyRow make(const std::string& method, double tolerance, double weight) {
         StudyInput input{study_.patches, tolerance, study_.max_triangles, {}};
         input.progress = [&](double fraction) { bar_((done_ + weight * fraction) / left_); };
         input.progress(0);
-        StudyResult result = run_study(*find_study_method(method), input);
+        StudyResult result = run_study(*find_any_study_method(method), input);
         StudyRow row{result.run, key(method, tolerance), study_.threads, {}};
         if (tolerance == study_.heat_tolerance() && result.run.reached) row.heat = draw(result);
         store_.save(row);

@@ -1,0 +1,87 @@
+// peer.cpp -- whole meshes a second, beside OpenCASCADE's BRepMesh: its linear deflection is the tolerance, its angular one the default.
+#include "peer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+
+#include "cases.h"
+#include "tessellate.h"
+
+namespace isoparm::bench {
+namespace {
+
+double largest(const TriangleNumbers& numbers) {
+    double most = 0;
+    for (const auto& part : numbers)
+        for (const double x : part) most = std::max(most, x);
+    return most;
+}
+
+/// How good its meshes are; told once, not measured again and again.
+struct PeerMesh {
+    std::unique_ptr<Peer> peer;
+    std::vector<std::pair<std::string, double>> facts;
+};
+
+Case peer_case(const std::string& table, const Composite& surface, double tolerance) {
+    const auto state = std::make_shared<PeerMesh>();
+    Case c{table, "OpenCASCADE " + Peer::version(), "meshes", [state, tolerance] {
+               state->peer->mesh(tolerance);
+               return Work{1, state->facts};
+           }};
+    c.prepare = [state, surface, tolerance] {
+        if (state->peer) return;
+        state->peer = std::make_unique<Peer>(surface);
+        state->peer->mesh(tolerance);
+        const StudyMesh made = state->peer->result();
+        state->facts = {{"triangles", double(made.mesh.triangle_count())}, {"seen/tolerance", largest(sampled_errors(surface, made.mesh)) / tolerance}};
+    };
+    c.reference = true;
+    return c;
+}
+
+Case own_case(const std::string& table, const Composite& surface, double tolerance) {
+    const auto made = [surface, tolerance](bool study) {
+        TessellationOptions options;
+        options.tolerance = tolerance;
+        options.study = study;
+        return tessellate(surface, options);
+    };
+    const auto facts = std::make_shared<std::vector<std::pair<std::string, double>>>();
+    Case c{table, "isoparm, fast", "meshes", [made, facts] {
+               made(false);
+               return Work{1, *facts};
+           }};
+    c.prepare = [made, facts, tolerance] {
+        if (!facts->empty()) return;
+        const Tessellation t = made(true);
+        *facts = {{"triangles", double(t.mesh.triangle_count())}, {"seen/tolerance", t.sampled_error / tolerance}, {"proved/tolerance", t.certified_error / tolerance}};
+    };
+    return c;
+}
+
+}  // namespace
+
+std::vector<Case> peer_cases() {
+    std::vector<Case> cases;
+    if (!has_peer()) {
+        std::fprintf(stderr, "OpenCASCADE was not found when this was built: no comparison with it\n");
+        return cases;
+    }
+    for (const auto& [scene, title] : {std::pair{"teapot", "teapot"}, {"sphere", "sphere, 8 rational octants"}, {"coons", "Coons patch"}}) {
+        const Composite surface = patches_of(scene);
+        for (const auto& [text, relative] : {std::pair{"1e-2", 1e-2}, {"1e-3", 1e-3}, {"1e-4", 1e-4}, {"1e-5", 1e-5}}) {
+            const double tolerance = relative * bounding_box(surface).diagonal();
+            const std::string table = std::string("beside OpenCASCADE: ") + title + " at " + text;
+            for (Case& c : std::array{peer_case(table, surface, tolerance), own_case(table, surface, tolerance)}) {
+                c.repetitions = relative < 5e-5 ? 2 : 5;
+                cases.push_back(std::move(c));
+            }
+        }
+    }
+    return cases;
+}
+
+}  // namespace isoparm::bench
