@@ -46,6 +46,7 @@ Case own_case(const std::string& table, const Composite& surface, double toleran
     const auto made = [surface, tolerance](bool study) {
         TessellationOptions options;
         options.tolerance = tolerance;
+        options.measure = Measure::geometric;
         options.study = study;
         return tessellate(surface, options);
     };
