@@ -95,6 +95,10 @@ TEST(MeshReader, ObjWithQuadsNegativeIndicesAndJoinedLines) {
     EXPECT_EQ(file.mesh.triangles[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
     EXPECT_EQ(file.mesh.triangles[2], (std::array<std::uint32_t, 3>{0, 1, 4}));
 }
+TEST(MeshReader, AByteOrderMarkIsPassedOver) {
+    EXPECT_EQ(read_mesh("\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj").mesh.triangles.size(), 1u);
+}
+
 TEST(MeshReader, StlInTextAndBinaryThatBeginsWithSolid) {
     std::string text = "solid two words\n";
     for (const char* corners : {"0 0 0 0 1 0 1 0 0", "0 0 0 1 0 0 0 0 1"}) {

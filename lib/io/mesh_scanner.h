@@ -12,7 +12,8 @@ std::string printable(std::string_view text);
 
 class TextScanner {
 public:
-    TextScanner(std::string_view text, const std::string& path) : text_(text), path_(path) {}
+    /// Passes over a byte order mark.
+    TextScanner(std::string_view text, const std::string& path) : text_(text), path_(path), at_(text.starts_with("\xEF\xBB\xBF") ? 3 : 0), line_start_(at_) {}
 
     /// The next word, on this line or a later one; empty at the end of the text.
     std::string_view word() { return take(true); }
@@ -38,7 +39,7 @@ private:
 
     std::string_view text_;
     const std::string& path_;
-    std::size_t at_ = 0, line_start_ = 0, word_column_ = 1;
+    std::size_t at_, line_start_, word_column_ = 1;
     std::size_t line_ = 1, word_line_ = 1;
 };
 
