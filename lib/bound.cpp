@@ -156,15 +156,16 @@ TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, c
     return result;
 }
 
-double geometric_bound(const TriangleBound& t, const std::array<const TriangleBound*, 3>& neighbours) {
+double geometric_bound(const TriangleBound& t, const std::array<Neighbour, 3>& neighbours) {
     if (!t.quiet) return t.parametric;
     double most = t.normal;
     for (int k = 0; k < 3; ++k) {
-        const TriangleBound* other = neighbours[k];
+        const TriangleBound* other = neighbours[k].bound;
         const double apart = other && other->quiet ? (length(t.unit - other->unit) + t.tilt + other->tilt) * (1 + 1e-14) + 1e-15 : 2;
         const double cosine = 1 - 0.5 * apart * apart;  // at most that of the angle between the planes
         // Over the neighbour, or where there is none, over this triangle alone.
-        const double beyond = cosine >= 0.95 ? std::max(t.normal, other->normal / cosine) + t.across[k] * (apart / cosine) : std::hypot(t.normal, t.across[k]);
+        const double beyond = cosine >= 0.95 ? std::max(t.beside[k], other->beside[neighbours[k].edge] / cosine) + t.across[k] * (apart / cosine)
+                                             : std::hypot(t.beside[k], t.across[k]);
         most = std::max(most, beyond * (1 + 1e-14));
     }
     return std::min(t.parametric, most);

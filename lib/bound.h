@@ -32,6 +32,7 @@ struct TriangleBound {
 
     double parametric = none;            // at least |d| everywhere; infinite when nothing could be proved
     double normal = none;                // at least |n.d| everywhere; infinite for triangles that are not quiet
+    std::array<double, 3> beside{none, none, none};  // at least |n.d| where S may lie over the plane beyond edge k, and on that edge
     std::array<double, 3> across{};      // at least |(n x e_k).d| on edge k, e_k its direction
     Point unit;                          // n up to tilt
     double tilt = none;
@@ -48,9 +49,14 @@ struct TriangleBound {
 /// By an enclosure over the triangle's own box: parametric only. The triangle must not cross a break of the patch.
 TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& corners, const std::array<Point, 3>& points);
 
-/// The geometric bound of a triangle from its own numbers and those of the neighbours in the same patch over edge k; nullptr
-/// where there is none: the edge is open, or another patch lies behind it.
-double geometric_bound(const TriangleBound& t, const std::array<const TriangleBound*, 3>& neighbours);
+/// The triangle of the same patch on the other side of an edge, and as which of its own edges it has it.
+struct Neighbour {
+    const TriangleBound* bound = nullptr;  // none: the edge is open, or another patch lies behind it
+    int edge = 0;
+};
+
+/// The geometric bound of a triangle from its own numbers and those of the neighbours over edge k.
+double geometric_bound(const TriangleBound& t, const std::array<Neighbour, 3>& neighbours);
 
 /// An upper bound of max over the simplex of a l0 l1 + b l1 l2 + c l2 l0, not below 0, exact but for rounding.
 double simplex_maximum(double a, double b, double c);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "quiet.h"
+
 namespace isoparm {
 namespace {
 
@@ -12,7 +14,6 @@ double safe(double x) { return x * kSafe + kUnderflow; }
 /// Times the sum of the absolute terms: at least the rounding error of H(m)[e,e] and of its products with unit vectors.
 constexpr double kRounding = 64 * 0x1p-53;
 
-constexpr std::array<int, 3> kNext{1, 2, 0};
 /// A triangle that fails is split by what its cell says, though this share of the bound may be the cell's: the first while there
 /// are finer cells, the second when there are none.
 constexpr double kClear = 0.4, kVague = 0.8;
@@ -31,21 +32,6 @@ std::array<Point, 3> frame_of(const Point& n) {
     if (!(std::fabs(dot(n, n) - 1) < 4e-15)) return {Point{0, 0, 1}, Point{1, 0, 0}, Point{0, 1, 0}};
     const Point t = normalized(cross(std::fabs(n.x) < 0.6 ? Point{1, 0, 0} : Point{0, 1, 0}, n));
     return {n, t, cross(n, t)};
-}
-
-/// max over the simplex of |sum l_i l_j b_k| for the worse sign of b, with q_k >= 0 added to both.
-double largest_form(const std::array<double, 3>& b, const std::array<double, 3>& q) {
-    return std::max(simplex_maximum(q[0] + b[0], q[1] + b[1], q[2] + b[2]), simplex_maximum(q[0] - b[0], q[1] - b[1], q[2] - b[2]));
-}
-
-/// DS[e_k] at the corners, were H equal to H(m) all over the triangle: linear in between. x: the mesh's edges, b = H(m)[e_k,e_k].
-std::array<Point, 3> along_edge(int k, const std::array<Point, 3>& x, const std::array<Point, 3>& b) {
-    const int after = kNext[k], last = kNext[after];
-    std::array<Point, 3> at;
-    at[k] = x[k] - 0.5 * b[k];
-    at[after] = x[k] + 0.5 * b[k];
-    at[last] = x[k] + 0.5 * (b[last] - b[after]);
-    return at;
 }
 
 /// An upper bound of the tangent of the angle between n and the normals of S: x the mesh's edges, b = H(m)[e_k,e_k], q what H strays from it
@@ -140,21 +126,6 @@ SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box, int par
     bounded = all < 1e290;
 }
 
-bool keeps_orientation(const Point& n, const std::array<Point, 3>& x, const std::array<Point, 3>& b, const std::array<double, 3>& q, const std::array<double, 3>& bend, double tilt) {
-    const std::array<double, 3> side{length(x[0]), length(x[1]), length(x[2])};
-    const int base = side[0] >= side[1] && side[0] >= side[2] ? 0 : side[1] >= side[2] ? 1 : 2, i = kNext[base], j = kNext[i];
-    const std::array<Point, 3> along_i = along_edge(i, x, b), along_j = along_edge(j, x, b);
-    double least = dot(n, cross(along_i[0], along_j[0]));
-    for (int c = 0; c < 3; ++c) {
-        const int d = kNext[c];
-        least = std::min({least, dot(n, cross(along_i[c], along_j[c])), 0.5 * (dot(n, cross(along_i[c], along_j[d])) + dot(n, cross(along_i[d], along_j[c])))});
-    }
-    const auto most = [&](int k) { return side[k] + 0.5 * (bend[0] + bend[1] + bend[2] + bend[k]); };
-    const auto off = [&](int k) { return 0.5 * (q[0] + q[1] + q[2] + q[k]); };
-    const double mi = most(i), mj = most(j), oi = off(i), oj = off(j);
-    return safe(mi * oj + mj * oi + oi * oj + (tilt + 1e-13) * mi * mj + 2 * tilt * dot(n, cross(x[i], x[j]))) < least;
-}
-
 TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& triangle, Measure measure, bool least) {
     TriangleBound result;
     if (!s.bounded) return result;
@@ -228,20 +199,37 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     for (int k = 0; k < 4; ++k) along[k] = std::max(0.0, std::fabs(dot(n, s.t[k])) + (least ? -s.t_rad[k] : s.t_rad[k]) + 4 * 0x1p-53 * s.t_size[k]);
     const std::array<double, 3> qn = stray(along), bn{dot(n, b[0]), dot(n, b[1]), dot(n, b[2])};
     result.worst_edge = choose_edge({std::fabs(bn[0]) + qn[0], std::fabs(bn[1]) + qn[1], std::fabs(bn[2]) + qn[2]});
-    // Quiet: lenses around the edges meet at corners only, and the map to the plane of L keeps its orientation.
-    std::array<double, 3> across;  // at least |inward . H[e_k,e_k]|
+    // Third derivatives with their signs, where they hardly vary: how H bends along an edge, and over the triangle.
+    const ThirdDerivatives third{s.t};
+    const auto on_edge = [&](int k) {
+        const Vec2 &from = p[k], &to = p[kNext[k]], e{to.x - from.x, to.y - from.y};
+        const auto& r = s.t_rad;
+        const double off = uu[k] * (model[0] + r[0] * ru + r[1] * rv) + 2 * std::fabs(uv[k]) * (model[1] + r[1] * ru + r[2] * rv) + vv[k] * (model[2] + r[2] * ru + r[3] * rv);
+        return EdgeBend{b[k] + third(e, {0.5 * (from.x + to.x) - mu, 0.5 * (from.y + to.y) - mv}), 0.5 * third(e, e), std::max(0.0, off) + 8 * noise[k]};
+    };
+    std::array<double, 3> across, lens;  // across: at least |inward . H[e_k,e_k]| as far as the edge's deviation goes
     bool quiet = result.tilt <= 1e-3;
     for (int k = 0; k < 3; ++k) {
+        const EdgeBend edge = on_edge(k);
         const Point inward = cross(n, x[k]) / side[k];  // in the plane
-        across[k] = safe(std::fabs(dot(inward, b[k])) + q[k] + 2 * result.tilt * bend[k]);
-        const double lens = (across[k] + 0.32 * (std::fabs(bn[k]) + qn[k] + result.tilt * bend[k])) * std::max(side[kNext[k]], side[kNext[kNext[k]]]) * side[k];
-        quiet = quiet && bend[k] <= side[k] && lens <= 0.39 * twice_area * (2 * side[k] - bend[k]);
+        const double any = safe(edge.largest());
+        across[k] = safe(edge.along(inward) + 2 * result.tilt * any);
+        lens[k] = safe(across[k] + 0.32 * (edge.along(n) + result.tilt * any)) * side[k] / (2 * side[k] - any);
+        quiet = quiet && any <= side[k] && bend[k] <= 1.5 * longest;
     }
-    quiet = quiet && keeps_orientation(n, x, b, q, bend, result.tilt);
-    if (!quiet) return result;
+    if (!quiet || !lenses_apart(lens, side, twice_area) || !keeps_orientation(n, x, b, q, bend, result.tilt)) return result;
     result.quiet = true;
-    result.normal = safe(0.5 * largest_form(bn, qn) + result.tilt * result.parametric);
-    for (int k = 0; k < 3; ++k) result.across[k] = safe(across[k] / 8);
+    std::array<double, 4> vague;
+    for (int k = 0; k < 4; ++k) vague[k] = least ? 0 : s.t_rad[k];
+    const CubicForm cubic(n, bn, s.t, p, {mu, mv});
+    const std::array<double, 3> off = stray(vague);
+    const double rounding = 8 * (noise[0] + noise[1] + noise[2]) + result.tilt * result.parametric;
+    result.normal = safe(std::min(0.5 * largest_form(bn, qn), cubic.largest(off)) + rounding);
+    for (int k = 0; k < 3; ++k) {
+        const double wide = safe(1.06 * result.parametric * side[k] / twice_area);  // see Lemma 6
+        result.beside[k] = std::min(result.normal, safe(cubic.beside(k, off, wide) + rounding));
+        result.across[k] = safe(across[k] / 8);
+    }
     return result;
 }
 

@@ -58,8 +58,4 @@ private:
 /// The bound of a triangle in the box of the model. `least`: what no finer cell could go below, as far as the model tells; no bound.
 TriangleBound bound_triangle(const SecondDerivatives& model, const CornerData& triangle, Measure measure, bool least = false);
 
-/// (Q2) of docs/certificates.md: the map to the plane across n has a positive Jacobian all over the triangle. x: its edges; b: H(m) on them,
-/// q: what H may be off by; bend: at least |b| + q.
-bool keeps_orientation(const Point& n, const std::array<Point, 3>& x, const std::array<Point, 3>& b, const std::array<double, 3>& q, const std::array<double, 3>& bend, double tilt);
-
 }  // namespace isoparm

@@ -153,7 +153,7 @@ std::optional<MeshProof> MeshProver::operator()(const Mesh& mesh, double toleran
             const TriangleBound& own = proof.bounds[i];
             double slack = slack_of(i);
             std::uint32_t worst = std::uint32_t(i);
-            std::array<const TriangleBound*, 3> neighbours{};
+            std::array<Neighbour, 3> neighbours;
             parametric[i] = rounding::up(own.parametric + slack);
             const auto c = corners_of(part, i);
             for (int k = 0; i < n && own.quiet && k < 3; ++k) {
@@ -162,7 +162,8 @@ std::optional<MeshProof> MeshProver::operator()(const Mesh& mesh, double toleran
                 if (other == kNobody ||
                     along_line(part.uv[c[edge]], part.uv[c[(edge + 1) % 3]], cells_[part.member].us, cells_[part.member].vs))
                     continue;
-                neighbours[edge] = &proof.bounds[other];
+                const int back = int(std::find(beside[other].begin(), beside[other].end(), std::uint32_t(i)) - beside[other].begin());
+                neighbours[edge] = {&proof.bounds[other], edge_of(part, back)};
                 slack = std::max(slack, slack_of(other));
                 if (proof.bounds[other].quiet && proof.bounds[other].normal > proof.bounds[worst].normal) worst = other;
             }

@@ -17,12 +17,13 @@ struct Places {
 struct Estimate {
     double parametric = 0;  // what counts where it is not quiet
     double normal = 0;
-    std::array<double, 3> across{};
+    std::array<double, 3> beside{}, across{};
     Point unit;
     bool quiet = false;
 
     double least() const { return quiet ? normal : parametric; }
-    /// With the neighbour over edge k, nullptr where it does not count, as in geometric_bound().
+    /// With the neighbour over edge k, nullptr where it does not count, as in geometric_bound(), but that the surface along the edge is as
+    /// far from the one plane as from the other.
     double beyond(int k, const Estimate* other) const;
     /// With all three.
     double with(const std::array<const Estimate*, 3>& neighbours) const;

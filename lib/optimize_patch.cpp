@@ -77,11 +77,12 @@ Estimate FreePatch::estimate_of(const Places& p, const FreeTriangle& like) const
     if (measure_ == Measure::geometric) e = estimate(model, p);
     if (!e.quiet) {
         const TriangleBound b = bound_triangle(model, p.corners(), measure_);
-        e = {b.parametric, b.normal, b.across, b.unit, measure_ == Measure::geometric && b.quiet};
+        e = {b.parametric, b.normal, b.beside, b.across, b.unit, measure_ == Measure::geometric && b.quiet};
     }
     e.parametric = (e.parametric + p.slack) / tolerance_;
     e.normal = (e.normal + p.slack) / tolerance_;
     for (double& x : e.across) x /= tolerance_;
+    for (double& x : e.beside) x = (x + p.slack) / tolerance_;
     return e;
 }
 

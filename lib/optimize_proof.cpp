@@ -25,17 +25,18 @@ void FreePatch::sharpen(std::uint32_t i) {
     const TriangleBound b = bound_triangle(SecondDerivatives(patch_, box_of(p.uv), SecondDerivatives::pieces), p.corners(), measure_);
     if (!b.quiet) return;
     t.proof.normal = std::min(t.proof.normal, b.normal);
-    for (int k = 0; k < 3; ++k) t.proof.across[k] = std::min(t.proof.across[k], b.across[k]);
+    for (int k = 0; k < 3; ++k) t.proof.across[k] = std::min(t.proof.across[k], b.across[k]), t.proof.beside[k] = std::min(t.proof.beside[k], b.beside[k]);
 }
 
 bool FreePatch::holds(std::uint32_t i) const {
     const FreeTriangle& t = triangles_[i];
     double slack = places(t.corner).slack;
-    std::array<const TriangleBound*, 3> neighbours{};
+    std::array<Neighbour, 3> neighbours;
     for (int k = 0; k < 3; ++k) {
         const auto j = t.beside[k];
         if (!behind(t, j)) continue;
-        neighbours[k] = &triangles_[j].proof;
+        const auto& back = triangles_[j].beside;
+        neighbours[k] = {&triangles_[j].proof, int(std::find(back.begin(), back.end(), i) - back.begin())};
         slack = std::max(slack, places(triangles_[j].corner).slack);
     }
     const double bound = measure_ == Measure::geometric ? geometric_bound(t.proof, neighbours) : t.proof.parametric;

@@ -122,12 +122,13 @@ double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const
     const PatchTriangle& t = mesh.triangles[triangle];
     double slack = mesh.slack_of(t);
     if (measure_ == Measure::parametric || !t.proof.quiet) return rounding::up(t.proof.parametric + slack);
-    std::array<const TriangleBound*, 3> neighbours{};
+    std::array<Neighbour, 3> neighbours;
     for (int k = 0; k < 3; ++k) {
         const auto& side = mesh.edges[t.edge[k]].side;
         const auto other = side[0] == triangle ? side[1] : side[0];
         if (other == kNone || mesh.left_out(mesh.triangles[other]) || mesh.on_break(mesh.edges[t.edge[k]])) continue;
-        neighbours[k] = &mesh.triangles[other].proof;
+        const auto& edges = mesh.triangles[other].edge;
+        neighbours[k] = {&mesh.triangles[other].proof, int(std::find(edges.begin(), edges.end(), t.edge[k]) - edges.begin())};
         slack = std::max(slack, mesh.slack_of(mesh.triangles[other]));
     }
     return rounding::up(geometric_bound(t.proof, neighbours) + slack);

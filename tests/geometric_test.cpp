@@ -149,6 +149,13 @@ TEST_P(TwoSided, BoundsOfACellHoldOnRandomTriangles) {
             ASSERT_LE(length(d), proof.parametric * (1 + 1e-12) + rounding) << "seed " << 9000 + i;
             if (!proof.quiet) continue;
             ASSERT_LE(std::abs(dot(d, proof.unit)), proof.normal * (1 + 1e-12) + rounding) << "seed " << 9000 + i;
+            double l[3];
+            for (int k = 0; k < 3; ++k) l[k] = w[(k + 3 - turn) % 3] / sum;
+            const double twice_area = length(cross(x[1] - x[0], x[2] - x[0]));
+            for (int k = 0; k < 3; ++k) {  // as near to edge k as the surface may lie beyond it
+                const double depth = l[(k + 2) % 3] * twice_area / distance(x[k], x[(k + 1) % 3]);
+                if (depth <= proof.parametric) ASSERT_LE(std::abs(dot(d, proof.unit)), proof.beside[k] * (1 + 1e-12) + rounding) << "seed " << 9000 + i;
+            }
             if (s % 2 == 0) continue;
             const Point e = normalized(x[(turn + 1) % 3] - x[turn]);
             ASSERT_LE(std::abs(dot(d, cross(proof.unit, e))), proof.across[turn] * (1 + 1e-12) + rounding) << "seed " << 9000 + i;
@@ -197,16 +204,19 @@ TEST(Geometric, StretchedParametersCostNothing) {
 
 TEST(Geometric, TriangleWithoutQuietNeighbourIsChargedForItsEdges) {
     TriangleBound t;
-    t.parametric = 5, t.normal = 1, t.across = {0.5, 0.75, 0.25}, t.unit = {0, 0, 1}, t.tilt = 0, t.quiet = true;
+    t.parametric = 5, t.normal = 1, t.beside = {1, 1, 1}, t.across = {0.5, 0.75, 0.25}, t.unit = {0, 0, 1}, t.tilt = 0, t.quiet = true;
     TriangleBound flat = t, wild = t, steep = t;
-    flat.normal = 0.5, wild.quiet = false, steep.unit = {1, 0, 0};
+    flat.normal = 0.5, flat.beside = {0.5, 0.5, 0.5}, wild.quiet = false, steep.unit = {1, 0, 0};
     const double alone = std::hypot(1, 0.75);
     EXPECT_NEAR(geometric_bound(t, {}), alone, 1e-12);
-    EXPECT_NEAR(geometric_bound(t, {&wild, &wild, &wild}), alone, 1e-12);
-    EXPECT_NEAR(geometric_bound(t, {&steep, &steep, &steep}), alone, 1e-12);
-    EXPECT_NEAR(geometric_bound(t, {&flat, &flat, &flat}), 1, 1e-12);
-    EXPECT_NEAR(geometric_bound(flat, {&t, &t, &t}), 1, 1e-12);  // the neighbour's part of the surface may lie under this triangle
-    EXPECT_EQ(geometric_bound(wild, {&flat, &flat, &flat}), 5);
+    const auto around = [](const TriangleBound& other) { return std::array<Neighbour, 3>{{{&other, 0}, {&other, 1}, {&other, 2}}}; };
+    EXPECT_NEAR(geometric_bound(t, around(wild)), alone, 1e-12);
+    EXPECT_NEAR(geometric_bound(t, around(steep)), alone, 1e-12);
+    EXPECT_NEAR(geometric_bound(t, around(flat)), 1, 1e-12);
+    EXPECT_NEAR(geometric_bound(flat, around(t)), 1, 1e-12);  // the neighbour's part of the surface may lie under this triangle
+    EXPECT_EQ(geometric_bound(wild, around(flat)), 5);
+    t.beside = {0.25, 0.25, 0.25};  // along its edges it is nearer than in its middle
+    EXPECT_NEAR(geometric_bound(flat, around(t)), 0.5, 1e-12);
 }
 
 }  // namespace

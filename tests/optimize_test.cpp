@@ -8,6 +8,7 @@
 #include "bound_cell.h"
 #include "patches/tensor_bezier.h"
 #include "patches/transformed.h"
+#include "quiet.h"
 #include "samples.h"
 #include "shapes.h"
 #include "tessellate.h"
