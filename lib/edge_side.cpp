@@ -1,0 +1,153 @@
+#include "edge_side.h"
+
+#include <algorithm>
+
+namespace isoparm {
+namespace {
+
+using Jet2 = JetUV<TaylorModel, 2>;
+
+/// The cell of x between lines; on a line, the one that `side` points into.
+std::size_t cell_beside(const std::vector<double>& lines, double x, double side) {
+    std::size_t i = 0;
+    while (i + 2 < lines.size() && (lines[i + 1] < x || (lines[i + 1] == x && side > 0))) ++i;
+    return i;
+}
+
+Jet2 variable(const Interval& from, const Interval& step, double cross, const TaylorModel& s) {
+    Jet2 x;
+    x.c[0] = TaylorModel(from) + TaylorModel(step) * s;
+    x.c[1] = TaylorModel(step);
+    x.c[2] = TaylorModel(cross);
+    return x;
+}
+
+Jet2 evaluate(const Polynomial& p, const Jet2& x, const Jet2& y) {
+    Jet2 sum;
+    for (int i = p.degree_u(); i >= 0; --i) {
+        Jet2 row;
+        for (int j = p.degree_v(); j >= 0; --j) {
+            if (j < p.degree_v()) row = row * y;
+            row.c[0] = row.c[0] + TaylorModel(p.coefficient(i, j));
+        }
+        sum = i < p.degree_u() ? sum * x + row : row;
+    }
+    return sum;
+}
+
+Interval step_of(double from, double to) { return Interval(to) - Interval(from); }
+Interval power(const Interval& x, int n) {
+    Interval r(1);
+    for (int k = 0; k < n; ++k) r = r * x;
+    return r;
+}
+
+/// Coefficient of a^k b^l in f(a * along + b * across), from the Taylor coefficients of f in (u,v).
+Interval directional(const JetUV<Interval, 3>& f, const Interval (&along)[2], const double (&across)[2], int k, int l) {
+    Interval sum(0);
+    for (int i = 0; i <= k + l; ++i) {
+        const int j = k + l - i;
+        Interval factor(0);
+        for (int m = std::max(0, k - j); m <= std::min(i, k); ++m)
+            factor = factor + Interval(binomial(i, m) * binomial(j, k - m)) * power(along[0], m) * power(across[0], i - m) * power(along[1], k - m) * power(across[1], j - k + m);
+        if (factor.lo != 0 || factor.hi != 0) sum = sum + factor * f.coefficient(i, j);
+    }
+    return sum;
+}
+
+/// f(c + D) = sum at[k] D^k, the highest coefficient anywhere in over[k]; of the orders that are bounded, the one with the least rest.
+TaylorModel expanded(const Interval* at, const Interval* over, int most, const TaylorModel& D) {
+    TaylorModel best(Interval::all()), sum, powers(1.0);
+    double least = HUGE_VAL;
+    for (int k = 0; k <= most; ++k) {
+        const Interval rest = (over[k] - Interval(at[k].bounded() ? mid(at[k]) : 0)) * powers.range();
+        const double size = rest.bounded() ? mag(rest) : HUGE_VAL;
+        if (size <= least && size < HUGE_VAL) {
+            least = size;
+            best = sum + TaylorModel(Interval(at[k].bounded() ? mid(at[k]) : 0)) * powers;
+            best.widen(rest);
+        }
+        if (!at[k].bounded()) break;
+        sum = sum + TaylorModel(at[k]) * powers;
+        powers = powers * D;
+    }
+    return best;
+}
+
+}  // namespace
+
+ParameterLine edge_line(const Patch& patch, int edge, double t0, double t1) {
+    static constexpr Vec2 quad[] = {{0, 1}, {-1, 0}, {0, -1}, {1, 0}}, triangle[] = {{1, -0.5}, {-0.5, 1}, {-0.5, -0.5}};
+    return {patch.edge_point(edge, t0), patch.edge_point(edge, t1), patch.domain() == Domain::quad ? quad[edge] : triangle[edge]};
+}
+
+EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : patch_(std::move(patch)), line_(line) {
+    const auto u = patch_.lines_u(), v = patch_.lines_v();
+    const std::size_t i = cell_beside(u, 0.5 * line.from.x + 0.5 * line.to.x, side.x), j = cell_beside(v, 0.5 * line.from.y + 0.5 * line.to.y, side.y);
+    cell_ = {u[i], u[i + 1], v[j], v[j + 1]};
+    exact_ = patch_.exact_cell(i, j);
+    if (exact_.empty()) return;
+    whole_ = form_at(TaylorModel::linear(0.5, 0.5));
+    for (const Jet2& x : whole_)
+        for (const TaylorModel& c : x.c)
+            if (!c.exact()) {
+                whole_.clear();
+                return;
+            }
+}
+
+EdgeSide::Jet EdgeSide::jet(double middle, double half) const {
+    if (whole_.empty()) return jet(TaylorModel::linear(middle, half));
+    auto form = whole_;
+    for (Jet2& x : form)
+        for (TaylorModel& c : x.c) c = c.restricted(2 * middle - 1, 2 * half);
+    return of_form(form);
+}
+
+EdgeSide::Jet EdgeSide::jet(const TaylorModel& s) const { return exact_.empty() ? enclosed(s) : of_form(form_at(s)); }
+
+EdgeSide::Jet EdgeSide::of_form(const std::vector<Jet2>& form) const {
+    if (form.size() == 3) return {form[0], form[1], form[2]};
+    return {form[0] / form[3], form[1] / form[3], form[2] / form[3]};
+}
+
+std::vector<Jet2> EdgeSide::form_at(const TaylorModel& s) const {
+    const Jet2 x = variable(Interval(line_.from.x) - Interval(mid(Interval(cell_.u0, cell_.u1))), step_of(line_.from.x, line_.to.x), line_.cross.x, s);
+    const Jet2 y = variable(Interval(line_.from.y) - Interval(mid(Interval(cell_.v0, cell_.v1))), step_of(line_.from.y, line_.to.y), line_.cross.y, s);
+    std::vector<Jet2> form;
+    for (const Polynomial& p : exact_) form.push_back(evaluate(p, x, y));
+    return form;
+}
+
+EdgeSide::Jet EdgeSide::enclosed(const TaylorModel& s) const {
+    const double centre = mid(s.coefficient(0));
+    const Interval reach = s.range();
+    const TaylorModel D = s - TaylorModel(centre);
+    const Interval along[] = {step_of(line_.from.x, line_.to.x), step_of(line_.from.y, line_.to.y)};
+    const double across[] = {line_.cross.x, line_.cross.y};
+    const auto place = [&](const Interval& t) {
+        // On the far side of the cell the patch would answer with the next one: the box reaches a little into this one.
+        const auto inside = [](Interval x, double low, double high) {
+            x = clip(x, {low, high});
+            return x.lo == high ? Interval(std::nextafter(high, low), high) : x;
+        };
+        return Box{inside(Interval(line_.from.x) + along[0] * t, cell_.u0, cell_.u1), inside(Interval(line_.from.y) + along[1] * t, cell_.v0, cell_.v1)};
+    };
+    const auto at = patch_.enclose(place(Interval(centre))).over, over = patch_.enclose(place(reach)).over;
+    Jet r;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int n = 0; n < Jet2::size; ++n) {
+            const auto [k, l] = Jet2::powers[std::size_t(n)];
+            Interval a[4], b[4];
+            const int most = 3 - k - l;
+            for (int m = 0; m <= most; ++m) {
+                const Interval times(binomial(k + m, k));
+                a[m] = times * directional(at[axis], along, across, k + m, l);
+                b[m] = times * directional(over[axis], along, across, k + m, l);
+            }
+            r[axis].c[n] = expanded(a, b, most, D);
+        }
+    return r;
+}
+
+}  // namespace isoparm
