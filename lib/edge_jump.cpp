@@ -13,7 +13,8 @@ using Sizes = std::array<Interval, kMeasures>;
 using Models = Vec3<TaylorModel>;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kTip = 0x1p-20;  // pieces of an edge are not made shorter
+constexpr double kTip = 0x1p-12;       // pieces of an edge of which nothing is known are not made shorter
+constexpr double kShortest = 0x1p-44;  // nor any other
 const Interval kUnknown{0, kInfinite};
 
 Models part(const EdgeSide::Jet& x, int n) { return {x.x.c[n], x.y.c[n], x.z.c[n]}; }
@@ -50,7 +51,7 @@ Interval angle_of(const Models& p, const Models& q) {
 
 struct Normal {
     Models t, c, w;  // along, across, t x c
-    explicit Normal(const EdgeSide::Jet& x) : t(part(x, 1)), c(part(x, 2)), w(cross(t, c)) {}
+    explicit Normal(const EdgeSide::Jet& x) : t(part(x, 1)), c(part(x, 2)), w(EdgeSide::normal(x)) {}
 };
 
 /// Second fundamental form over first, in the direction x_c - (F/E) x_s: II(d,d) / I(d,d) = (L F^2 - 2 M E F + N E^2) / (E |w|^3), L, M, N with w
@@ -97,10 +98,9 @@ private:
         if (wanted_[kC0]) s[kC0] = length_of(jump(0));
         if (wanted_[kC1]) s[kC1] = length_of(jump(2));
         if (wanted_[kC2]) s[kC2] = length_of(jump(5)) * Interval(2);
-        if (!wanted_[kG1] && !wanted_[kG2]) return s;
-        const Normal p(x), q(y);
-        if (wanted_[kG1]) s[kG1] = angle_of(p.w, q.w);
+        if (wanted_[kG1]) s[kG1] = e.matched ? angle_of(e.a.normal(middle, half), EdgeSide::normal(y)) : angle_of(e.a.normal(middle, half), e.b.normal(middle, half));
         if (wanted_[kG2]) {
+            const Normal p(x), q(y);
             const Interval r = (cross_curvature(x, p) - cross_curvature(y, q)).range();
             s[kG2] = r.bounded() ? abs(r) : kUnknown;
         }
@@ -147,8 +147,9 @@ private:
             if (settled_[m]) continue;
             find_worst(m);
             const JumpBound& b = bounds_[m];
-            const bool enough = b.upper <= 0.01 * limits_.tolerance[m] || b.upper - b.lower <= limits_.relative * b.upper || (b.upper <= limits_.tolerance[m] && halved_[m] > 64);
-            if (!enough && pieces_[worst_[m]].half > kTip / 2 && halved_[m] < limits_.max_halvings) return m;
+            const bool enough = b.upper <= 0.01 * limits_.tolerance[m] || (b.upper < kInfinite && b.upper - b.lower <= limits_.relative * b.upper) || (b.upper <= limits_.tolerance[m] && halved_[m] > 64);
+            const double shortest = b.upper < kInfinite ? kShortest : kTip;
+            if (!enough && pieces_[worst_[m]].half > shortest / 2 && halved_[m] < limits_.max_halvings) return m;
             settled_[m] = true, wanted_[m] = false;
         }
         return kMeasures;

@@ -74,6 +74,28 @@ TaylorModel expanded(const Interval* at, const Interval* over, int most, const T
     return best;
 }
 
+/// Is this vector 0 at d = end, as far as rounding lets one see, and not everywhere?
+bool vanishes(const Vec3<TaylorModel>& t, double end) {
+    double size = 0, value = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int k = 0; k <= t[axis].degree(); ++k) size = std::max(size, mag(t[axis].coefficient(k)));
+        const Interval at = t[axis].at(end);
+        if (!at.contains(0)) return false;
+        value = std::max(value, mag(at));
+    }
+    return value <= 1e-11 * size && size > 0;
+}
+/// t / (1 + d) or t / (1 - d), when t is 0 at d = end = -1 or 1.
+TaylorModel without_zero(const TaylorModel& t, double end) {
+    std::array<Interval, TaylorModel::order + 1> q;
+    const int n = t.degree();
+    if (n < 1) return 0.0;
+    q[std::size_t(n - 1)] = t.coefficient(n);
+    for (int k = n - 1; k >= 1; --k) q[std::size_t(k - 1)] = t.coefficient(k) + Interval(end) * q[std::size_t(k)];
+    const TaylorModel r = TaylorModel::polynomial(q.data(), n - 1);
+    return end < 0 ? r : -r;
+}
+
 }  // namespace
 
 ParameterLine edge_line(const Patch& patch, int edge, double t0, double t1) {
@@ -94,6 +116,34 @@ EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : p
                 whole_.clear();
                 return;
             }
+    find_directions();
+}
+
+// Of a rational surface X/w the derivatives have the directions of X' w - X w', which are polynomials.
+void EdgeSide::find_directions() {
+    for (const int n : {1, 2}) {
+        Vec3<TaylorModel>& t = directions_[std::size_t(n - 1)];
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto& x = whole_[std::size_t(axis)].c;
+            t[axis] = whole_.size() == 3 ? x[n] : x[n] * whole_[3].c[0] - x[0] * whole_[3].c[n];
+            if (!t[axis].exact()) return;
+        }
+        for (const double end : {-1.0, 1.0})
+            while (vanishes(t, end))
+                for (int axis = 0; axis < 3; ++axis) t[axis] = without_zero(t[axis], end);
+    }
+    has_directions_ = true;
+}
+
+Vec3<TaylorModel> EdgeSide::normal(const Jet& x) {
+    return cross(Vec3<TaylorModel>{x.x.c[1], x.y.c[1], x.z.c[1]}, Vec3<TaylorModel>{x.x.c[2], x.y.c[2], x.z.c[2]});
+}
+Vec3<TaylorModel> EdgeSide::normal(double middle, double half) const {
+    if (!has_directions_) return normal(jet(middle, half));
+    auto t = directions_;
+    for (auto& v : t)
+        for (int axis = 0; axis < 3; ++axis) v[axis] = v[axis].restricted(2 * middle - 1, 2 * half);
+    return cross(t[0], t[1]);
 }
 
 EdgeSide::Jet EdgeSide::jet(double middle, double half) const {

@@ -5,6 +5,7 @@
 // polynomial or rational (Patch::exact_cell); elsewhere by enclosures to third order, whose rest shrinks with the length of the piece to the
 // fourth power for positions, to the third for first derivatives and to the second for second ones.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "patch.h"
@@ -31,6 +32,10 @@ public:
     Vec2 at(double s) const { return {line_.from.x + s * (line_.to.x - line_.from.x), line_.from.y + s * (line_.to.y - line_.from.y)}; }
     /// Over s in [middle - half, middle + half]; at one point when half is 0.
     Jet jet(double middle, double half) const;
+    /// Of the direction of S_s x S_cross, of any length, over the same. Where the edge ends in a pole, and S_cross (or S_s) goes to 0 there
+    /// (as far as rounding lets one see; it is taken for an exact 0), that factor is divided out: the direction has its limit at the end.
+    Vec3<TaylorModel> normal(double middle, double half) const;
+    static Vec3<TaylorModel> normal(const Jet& x);
     /// At s = s(d): another run along the same line. Derivatives are still by s.
     Jet jet(const TaylorModel& s) const;
 
@@ -38,12 +43,15 @@ private:
     Jet of_form(const std::vector<JetUV<TaylorModel, 2>>& form) const;
     std::vector<JetUV<TaylorModel, 2>> form_at(const TaylorModel& s) const;
     Jet enclosed(const TaylorModel& s) const;
+    void find_directions();
 
     Patch patch_;
     ParameterLine line_;
     Rect cell_;
     std::vector<Polynomial> exact_;
     std::vector<JetUV<TaylorModel, 2>> whole_;  // over all of s in [0,1], where that is exact
+    std::array<Vec3<TaylorModel>, 2> directions_;  // then of S_s and S_cross, without the zeros at the ends
+    bool has_directions_ = false;
 };
 
 }  // namespace isoparm

@@ -159,7 +159,7 @@ void print_text(std::ostream& out, const Report& r) {
     if (!c.lines.empty()) out << "\nLines between the cells of a patch\n", print_joints(out, r, c.lines);
     for (const auto* list : {&c.joints, &c.lines})
         if (std::any_of(list->begin(), list->end(), [](const Joint& j) { return std::any_of(j.jumps.begin(), j.jumps.end(), [](const JumpBound& b) { return !b.excluded.empty(); }); })) {
-            out << "\n* but for 1e-6 of the edge, next to an end where the surface is singular (a pole or apex)\n";
+            out << "\n* but for 1/4096 of the edge, next to an end where the surface is singular (a pole or apex)\n";
             break;
         }
     if (!c.poles.empty()) out << "\nCollapsed edges\n";
