@@ -18,7 +18,7 @@ struct ContinuityOptions {
     double size = 0;                   // the bounding-box diagonal
     double capture = 0;                // edges of one surface that stay nearer than this, and do not meet, are a joint with a gap; 0: none
     std::vector<std::string> surface;  // that each member belongs to, one a member; empty: all to one
-    int max_halvings = 500;            // see JumpLimits
+    int max_halvings = 4000;            // see JumpLimits
 };
 
 struct Joint {

@@ -135,7 +135,7 @@ std::optional<Candidate> beside(const Composite& surface, const std::vector<Run>
         c.at_a.t0 = place(backwards ? b.last : b.first, false), c.at_a.t1 = place(backwards ? b.first : b.last, true);
         if (backwards) std::swap(c.at_b.t0, c.at_b.t1);
         if (!(c.at_a.t1 - c.at_a.t0 > 1e-3)) continue;
-        c.far = apart(surface, c.at_a, c.at_b).nearest;
+        c.far = std::max(apart(surface, c.at_a, c.at_b).nearest, apart(surface, c.at_b, c.at_a).nearest);
         if (c.far < best.far) best = c;
     }
     return best.far <= near ? std::optional<Candidate>(best) : std::nullopt;

@@ -113,7 +113,7 @@ private:
             if (wanted_[m] && sizes[m].lo > bounds_[m].lower) bounds_[m].lower = sizes[m].lo, bounds_[m].at = segments_[k].a.at(s);
     }
     void add(std::size_t k, double middle, double half) {
-        sample(k, middle);
+        if (pieces_.size() < 256) sample(k, middle);  // by then the lower bounds are as good as they get
         const Sizes sizes = measure(k, middle, half);
         Piece p{k, middle, half, {}};
         for (int m = 0; m < kMeasures; ++m) {
@@ -149,10 +149,18 @@ private:
             const JumpBound& b = bounds_[m];
             const bool enough = b.upper <= 0.01 * limits_.tolerance[m] || (b.upper < kInfinite && b.upper - b.lower <= limits_.relative * b.upper) || (b.upper <= limits_.tolerance[m] && halved_[m] > 64);
             const double shortest = b.upper < kInfinite ? kShortest : kTip;
-            if (!enough && pieces_[worst_[m]].half > shortest / 2 && halved_[m] < limits_.max_halvings) return m;
+            if (!enough && pieces_[worst_[m]].half > shortest / 2 && halved_[m] < limits_.max_halvings && !stalled(m)) return m;
             settled_[m] = true, wanted_[m] = false;
         }
         return kMeasures;
+    }
+
+    /// Has it gained less than a tenth by its last 128 pieces?
+    bool stalled(int m) {
+        if (halved_[m] == 0 || halved_[m] % 128 != 0) return false;
+        const bool stuck = !(bounds_[m].upper < 0.9 * before_[m]);
+        before_[m] = bounds_[m].upper;
+        return stuck;
     }
 
     const std::vector<EdgeSegment>& segments_;
@@ -161,6 +169,7 @@ private:
     std::array<JumpBound, kMeasures> bounds_;
     std::array<std::size_t, kMeasures> worst_{};
     std::array<int, kMeasures> halved_{};
+    std::array<double, kMeasures> before_{kInfinite, kInfinite, kInfinite, kInfinite, kInfinite};
     std::array<bool, kMeasures> wanted_{}, settled_{};
 };
 

@@ -33,7 +33,7 @@ struct EdgeSegment {
 struct JumpLimits {
     std::array<double, kMeasures> tolerance{};  // 0: none; below a hundredth of it, no bound is made sharper
     double relative = 0.01;                     // nor when upper - lower is less than this fraction of upper
-    int max_halvings = 500;                     // of pieces, for the sake of one measure: the budget; what is left is a wider interval
+    int max_halvings = 4000;                     // of pieces, for the sake of one measure: the budget; what is left is a wider interval
 };
 
 /// Segments in order along the edge. Deterministic.

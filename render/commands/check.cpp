@@ -27,7 +27,7 @@ docs/continuity.md explains what is measured.
 --angle DEGREES   of normals (1e-6)
 --capture D       edges of one surface that stay nearer than D to each other, and do not meet, are reported as a joint with
                   a gap; as --tolerance (1e-2rel); 0: none
---halvings N      the budget: how often an edge is cut for one measure (500); what is left is a wider interval, proved as well
+--halvings N      the budget: how often an edge is cut for one measure (4000); what is left is a wider interval, proved as well
 
 --json            all numbers as JSON
 --quiet           no messages; --threads N  at most N threads: the result is the same for every N
