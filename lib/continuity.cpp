@@ -65,7 +65,7 @@ void add_segments(const Composite& surface, const Joint& joint, const JointPart&
         const auto [a0, b0] = cuts[k];
         const auto [a1, b1] = cuts[k + 1];
         if (!(a1 - a0 > 1e-12) || !(std::fabs(b1 - b0) > 1e-12)) continue;
-        EdgeSegment e{side_of(pa, joint.a.edge, a0, a1, false), side_of(pb, joint.b.edge, b0, b1, true), {}};
+        EdgeSegment e{side_of(pa, joint.a.edge, a0, a1, false), side_of(pb, joint.b.edge, b0, b1, true), {}, {}, 0};
         if (!joint.affine)
             e.matched = [&surface, a = Joint::Side{joint.a.member, joint.a.edge, a0, a1, 0}, b = Joint::Side{joint.b.member, joint.b.edge, b0, b1, 0}](double middle, double half) {
                 return nearest_run(surface, a, b, middle, half);
@@ -84,7 +84,7 @@ std::vector<EdgeSegment> line_segments(const Composite& surface, const Joint& li
     for (std::size_t k = 0; k + 1 < along.size(); ++k) {
         const auto at = [&](double t) { return is_u ? Vec2{line.a.value, t} : Vec2{t, line.a.value}; };
         const ParameterLine l{at(along[k]), at(along[k + 1]), across};
-        r.push_back({EdgeSide(patch, l, opposite(across)), EdgeSide(patch, l, across), {}});
+        r.push_back({EdgeSide(patch, l, opposite(across)), EdgeSide(patch, l, across), {}, {}, 0});
     }
     return r;
 }

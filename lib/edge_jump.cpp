@@ -92,7 +92,13 @@ private:
 
     Sizes measure(std::size_t k, double middle, double half) const {
         const EdgeSegment& e = segments_[k];
-        const EdgeSide::Jet x = e.a.jet(middle, half), y = e.matched ? e.b.jet(e.matched(middle, half)) : e.b.jet(middle, half);
+        const EdgeSide::Jet x = e.a.jet(middle, half);
+        if (e.curve) {
+            Sizes s;
+            s[kC0] = length_of(part(x, e.derivative == 1 ? 2 : 0) - e.curve(middle, half));
+            return s;
+        }
+        const EdgeSide::Jet y = e.matched ? e.b.jet(e.matched(middle, half)) : e.b.jet(middle, half);
         Sizes s;
         const auto jump = [&](int n) { return part(x, n) - part(y, n); };
         if (wanted_[kC0]) s[kC0] = length_of(jump(0));

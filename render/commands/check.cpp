@@ -4,9 +4,12 @@
 #include <cstdlib>
 #include <iostream>
 
+#include <tbb/parallel_for.h>
+
 #include "commands/selection.h"
 #include "continuity.h"
 #include "json_text.h"
+#include "promises.h"
 
 namespace isoparm {
 namespace {
@@ -36,8 +39,19 @@ exit codes        0, 2 edges of one surface do not meet, or a surface does not k
                   read, 64 usage, 65 bad scene or curves that do not fit together
 )";
 
+/// A surface that is built from curves: what its data must fulfil, and what it promises of them.
+struct Examined {
+    std::string name;
+    DataReport data;
+    std::vector<JumpBound> residuals;  // one a promise
+    bool compatible() const {
+        return std::all_of(data.conditions.begin(), data.conditions.end(), [](const Condition& c) { return c.gap <= c.tolerance; });
+    }
+};
+
 struct Report {
     Selection selection;
+    std::vector<Examined> surfaces;
     ContinuityOptions options;
     Continuity continuity;
     std::vector<std::string> failed;  // sentences
@@ -59,6 +73,38 @@ void judge_joints(Report& r) {
             r.failed.push_back(text_of(r, j, j.a) + " and " + text_of(r, j, j.b) + (apart ? " do not meet: they are " + to_text(gap.lower) + " apart" : " are not proved to meet") + ", expected at most " +
                                to_text(r.options.tolerance));
         }
+}
+
+/// Of the surfaces that are checked as a whole; their promises are measured in parallel.
+void examine_surfaces(const Scene& scene, Report& r) {
+    for (const std::string& name : r.selection.surface) {
+        if (!r.surfaces.empty() && r.surfaces.back().name == name) continue;
+        const Surface* s = scene.find_surface(name);
+        r.surfaces.push_back({name, s && s->examine ? s->examine() : DataReport{}, {}});
+        Examined& e = r.surfaces.back();
+        e.residuals.resize(e.data.promises.size());
+        tbb::parallel_for(std::size_t(0), e.residuals.size(), [&](std::size_t k) {
+            const Promise& p = e.data.promises[k];
+            e.residuals[k] = bound_residual(s->patches[p.patch].patch, p, r.options.tolerance);
+        });
+    }
+}
+
+void judge_promises(Report& r) {
+    std::size_t first = 0;  // of the surface's patches among those selected
+    for (const Examined& e : r.surfaces) {
+        for (std::size_t k = 0; k < e.residuals.size(); ++k) {
+            const JumpBound& b = e.residuals[k];
+            if (b.upper <= r.options.tolerance) continue;
+            r.failed.push_back(e.name + ": " + e.data.promises[k].what + (b.lower > r.options.tolerance ? ": not so, by " + to_text(b.lower) : ": not proved") + ", expected at most " + to_text(r.options.tolerance));
+        }
+        for (const Joint& j : r.continuity.lines) {
+            if (j.a.member < first || std::find(e.data.smooth.begin(), e.data.smooth.end(), j.a.member - first) == e.data.smooth.end() || r.selection.surface[j.a.member] != e.name) continue;
+            if (j.jumps[kC1].upper > r.options.tolerance)
+                r.failed.push_back(text_of(r, j, j.a) + ": the surface promises C1 here, " + (j.jumps[kC1].lower > r.options.tolerance ? "and its derivative jumps by " + to_text(j.jumps[kC1].lower) : "which is not proved"));
+        }
+        first += std::size_t(std::count(r.selection.surface.begin(), r.selection.surface.end(), e.name));
+    }
 }
 
 // ---- JSON
@@ -95,11 +141,22 @@ template <class List, class F> std::string json_list(const List& list, F f) {
     return "[" + text + "]";
 }
 
+std::string json_of(const Report& r, const Examined& e) {
+    std::string conditions;
+    const auto add = [&](const std::string& text) { conditions += (conditions.empty() ? "\n    {" : ",\n    {") + text + "}"; };
+    for (const Condition& c : e.data.conditions)
+        add("\"what\": " + json_text(c.what) + ", \"gap\": " + json_text(c.gap) + ", \"tolerance\": " + json_text(c.tolerance) + ", \"holds\": " + (c.gap <= c.tolerance ? "true" : "false") + ", \"remedy\": " +
+            (c.remedy.empty() ? "null" : json_text(c.remedy)));
+    for (std::size_t k = 0; k < e.residuals.size(); ++k) {
+        const JumpBound& b = e.residuals[k];
+        add("\"what\": " + json_text(e.data.promises[k].what) + ", \"gap\": " + json_text(b.upper) + ", \"tolerance\": " + json_text(r.options.tolerance) + ", \"holds\": " + (b.upper <= r.options.tolerance ? "true" : "false") +
+            ", \"residual\": " + json_of(b));
+    }
+    return "{\"name\": " + json_text(e.name) + ", \"compatible\": " + (e.compatible() ? "true" : "false") + ", \"conditions\": [" + conditions + "]}";
+}
+
 void print_json(std::ostream& out, const Report& r) {
-    std::vector<std::string> names;
-    for (const std::string& s : r.selection.surface)
-        if (names.empty() || names.back() != s) names.push_back(s);
-    out << "{\"surfaces\": " << json_list(names, [](const std::string& s) { return "{\"name\": " + json_text(s) + ", \"compatible\": true, \"conditions\": []}"; })
+    out << "{\"surfaces\": " << json_list(r.surfaces, [&](const Examined& e) { return json_of(r, e); })
         << ",\n \"edges\": " << json_list(r.continuity.joints, [&](const Joint& j) { return json_of(r, j); })
         << ",\n \"lines\": " << json_list(r.continuity.lines, [&](const Joint& j) { return json_of(r, j); })
         << ",\n \"poles\": " << json_list(r.continuity.poles, [&](const Pole& p) {
@@ -151,10 +208,25 @@ void print_joints(std::ostream& out, const Report& r, const std::vector<Joint>& 
     }
 }
 
+void print_surface(std::ostream& out, const Report& r, const Examined& e) {
+    if (e.data.conditions.empty() && e.residuals.empty()) return;
+    out << "\n" << e.name << ": its data are " << (e.compatible() ? "compatible" : "not compatible") << "\n";
+    for (const Condition& c : e.data.conditions) {
+        out << "  " << c.what << ": gap " << brief(c.gap, true);
+        if (c.gap > c.tolerance) out << ", above " << brief(c.tolerance, true) << (c.remedy.empty() ? "" : "; remedy: " + c.remedy);
+        out << "\n";
+    }
+    for (std::size_t k = 0; k < e.residuals.size(); ++k) {
+        const JumpBound& b = e.residuals[k];
+        out << "  " << e.data.promises[k].what << ", proved within " << brief(b.upper, true) << (b.upper <= r.options.tolerance ? "" : " at worst, at least " + brief(b.lower, false)) << "\n";
+    }
+}
+
 void print_text(std::ostream& out, const Report& r) {
     const Continuity& c = r.continuity;
     out << r.selection.patches.size() << (r.selection.patches.size() == 1 ? " patch, " : " patches, ") << c.joints.size() << " joined edges, " << c.open.size() << " open, " << c.poles.size()
         << " collapsed to a point; tolerance " << brief(r.options.tolerance, true) << ", " << brief(r.options.angle, true) << " degrees\n";
+    for (const Examined& e : r.surfaces) print_surface(out, r, e);
     if (!c.joints.empty()) out << "\nEdges: largest jumps, proved for the whole edge\n", print_joints(out, r, c.joints);
     if (!c.lines.empty()) out << "\nLines between the cells of a patch\n", print_joints(out, r, c.lines);
     for (const auto* list : {&c.joints, &c.lines})
@@ -167,7 +239,7 @@ void print_text(std::ostream& out, const Report& r) {
         out << "  " << r.selection.patches[p.member].name << " " << r.selection.patches[p.member].patch.edge_name(p.edge) << " is the point (" << to_text(p.at.x) << ", " << to_text(p.at.y) << ", " << to_text(p.at.z) << ")\n";
     out << "\n";
     for (const std::string& s : r.failed) out << "FAILED: " << s << "\n";
-    if (r.failed.empty()) out << "All edges of one surface that are near each other meet.\n";
+    if (r.failed.empty()) out << "All that these surfaces promise is proved; edges of one surface that are near each other meet.\n";
 }
 
 int run(const std::vector<std::string>& arguments) {
@@ -190,7 +262,9 @@ int run(const std::vector<std::string>& arguments) {
     if (halvings) how.max_halvings = *halvings;
     how.surface = r.selection.surface;
     r.continuity = find_continuity(r.selection.patches, how);
+    examine_surfaces(scene, r);
     judge_joints(r);
+    judge_promises(r);
     (options.has("--json") ? print_json : print_text)(std::cout, r);
     return r.failed.empty() ? kSuccess : kCheckFailed;
 }
