@@ -161,10 +161,10 @@ private:
         return kMeasures;
     }
 
-    /// Has it gained less than a tenth by its last 128 pieces?
+    /// Has it gained less than a fiftieth by its last 128 pieces?
     bool stalled(int m) {
         if (halved_[m] == 0 || halved_[m] % 128 != 0) return false;
-        const bool stuck = !(bounds_[m].upper < 0.9 * before_[m]);
+        const bool stuck = !(bounds_[m].upper < 0.98 * before_[m]);
         before_[m] = bounds_[m].upper;
         return stuck;
     }

@@ -102,7 +102,7 @@ BuiltSurface build_coons_triangle(const Json& j, SceneBuilder& scene) {
     const auto examined = [&](Patch patch, const TriangleCurves& c) {
         BuiltSurface s(std::move(patch));
         if (part != 0) return s;
-        if (method.along == std::string("cross")) return s.examined([c] { return examine_triangle(c.edges, c.along); });
+        if (method.along && method.along == std::string("cross")) return s.examined([c] { return examine_triangle(c.edges, c.along); });
         return s.examined([c] { return examine_triangle(c.edges); });
     };
     if (!method.along) return fitted(edges, j, scene, [&](const Three& e) { return examined(method.build(j, scene, {e, e}, part), {e, e}); });
