@@ -161,10 +161,10 @@ private:
         return kMeasures;
     }
 
-    /// Has it gained less than a fiftieth by its last 128 pieces?
+    /// Have twice as many pieces gained less than a third? Bounds that converge at all gain three quarters or more.
     bool stalled(int m) {
-        if (halved_[m] == 0 || halved_[m] % 128 != 0) return false;
-        const bool stuck = !(bounds_[m].upper < 0.98 * before_[m]);
+        if (halved_[m] < 128 || (halved_[m] & (halved_[m] - 1)) != 0) return false;
+        const bool stuck = !(bounds_[m].upper < 0.67 * before_[m]);
         before_[m] = bounds_[m].upper;
         return stuck;
     }
