@@ -43,6 +43,32 @@ TaylorModel nearest_run(const Composite& surface, const Joint::Side& a, const Jo
     return TaylorModel::polynomial(exact.data(), n - 1);
 }
 
+/// At most the distance of a point of a from the edge b: pieces of b that may be nearest are halved until little is left to gain.
+double least_distance(const Composite& surface, const Joint::Side& a, const Joint::Side& b, double s) {
+    const Patch &pa = surface[a.member].patch, &pb = surface[b.member].patch;
+    const Vec2 at = pa.edge_point(a.edge, std::clamp(a.t0 + s * (a.t1 - a.t0), 0.0, 1.0));
+    const Vec3<Interval> p = pa.enclose_point(at.x, at.y);
+    struct Piece {
+        double t0, t1, least;
+        bool operator<(const Piece& o) const { return least > o.least; }  // the nearest on top
+    };
+    const auto piece = [&](double t0, double t1) {
+        const Vec2 x = pb.edge_point(b.edge, t0), y = pb.edge_point(b.edge, t1);
+        const auto d = pb.enclose_points({hull(Interval(x.x), Interval(y.x)), hull(Interval(x.y), Interval(y.y))}) - p;
+        return Piece{t0, t1, sqrt(square(d.x) + square(d.y) + square(d.z)).lo};
+    };
+    std::vector<Piece> heap{piece(0, 1)};
+    for (int k = 0; k < 300; ++k) {
+        const Piece best = heap.front();
+        if (best.t1 - best.t0 < 1e-12) break;
+        std::pop_heap(heap.begin(), heap.end());
+        heap.pop_back();
+        const double middle = 0.5 * (best.t0 + best.t1);
+        for (const Piece& half : {piece(best.t0, middle), piece(middle, best.t1)}) heap.push_back(half), std::push_heap(heap.begin(), heap.end());
+    }
+    return heap.front().least;
+}
+
 /// Cuts a part at the breaks of both edges, and makes a segment of each piece.
 void add_segments(const Composite& surface, const Joint& joint, const JointPart& part, std::vector<EdgeSegment>& out) {
     const Patch &pa = surface[joint.a.member].patch, &pb = surface[joint.b.member].patch;
@@ -65,11 +91,12 @@ void add_segments(const Composite& surface, const Joint& joint, const JointPart&
         const auto [a0, b0] = cuts[k];
         const auto [a1, b1] = cuts[k + 1];
         if (!(a1 - a0 > 1e-12) || !(std::fabs(b1 - b0) > 1e-12)) continue;
-        EdgeSegment e{side_of(pa, joint.a.edge, a0, a1, false), side_of(pb, joint.b.edge, b0, b1, true), {}, {}, 0};
-        if (!joint.affine)
-            e.matched = [&surface, a = Joint::Side{joint.a.member, joint.a.edge, a0, a1, 0}, b = Joint::Side{joint.b.member, joint.b.edge, b0, b1, 0}](double middle, double half) {
-                return nearest_run(surface, a, b, middle, half);
-            };
+        EdgeSegment e{side_of(pa, joint.a.edge, a0, a1, false), side_of(pb, joint.b.edge, b0, b1, true), {}, {}, {}, 0};
+        if (!joint.affine) {
+            const Joint::Side a{joint.a.member, joint.a.edge, a0, a1, 0}, b{joint.b.member, joint.b.edge, b0, b1, 0};
+            e.matched = [&surface, a, b](double middle, double half) { return nearest_run(surface, a, b, middle, half); };
+            e.distance = [&surface, a, b](double s) { return least_distance(surface, a, b, s); };
+        }
         out.push_back(std::move(e));
     }
 }
@@ -84,7 +111,7 @@ std::vector<EdgeSegment> line_segments(const Composite& surface, const Joint& li
     for (std::size_t k = 0; k + 1 < along.size(); ++k) {
         const auto at = [&](double t) { return is_u ? Vec2{line.a.value, t} : Vec2{t, line.a.value}; };
         const ParameterLine l{at(along[k]), at(along[k + 1]), across};
-        r.push_back({EdgeSide(patch, l, opposite(across)), EdgeSide(patch, l, across), {}, {}, 0});
+        r.push_back({EdgeSide(patch, l, opposite(across)), EdgeSide(patch, l, across), {}, {}, {}, 0});
     }
     return r;
 }

@@ -114,7 +114,8 @@ private:
     }
 
     void sample(std::size_t k, double s) {
-        const Sizes sizes = measure(k, s, 0);
+        Sizes sizes = measure(k, s, 0);
+        if (wanted_[kC0] && segments_[k].distance) sizes[kC0].lo = std::min(sizes[kC0].lo, segments_[k].distance(s));
         for (int m = 0; m < kMeasures; ++m)
             if (wanted_[m] && sizes[m].lo > bounds_[m].lower) bounds_[m].lower = sizes[m].lo, bounds_[m].at = segments_[k].a.at(s);
     }

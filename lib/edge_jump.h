@@ -28,6 +28,8 @@ struct EdgeSegment {
     EdgeSide a, b;
     /// s of b, of s of a, where the two do not run in step: as a model over [middle - half, middle + half].
     std::function<TaylorModel(double middle, double half)> matched;
+    /// Then, at most the distance of the point of a at s from all of the edge of b: the lower bound of c0.
+    std::function<double(double s)> distance;
     /// What a is compared with instead of b, if anything: its position, or with derivative 1 its derivative across, against this curve (c0 alone).
     std::function<Vec3<TaylorModel>(double middle, double half)> curve;
     int derivative = 0;
