@@ -6,6 +6,7 @@
 #include <optional>
 #include <tuple>
 
+#include "error.h"
 #include "topology.h"
 
 namespace isoparm {
@@ -13,6 +14,7 @@ namespace {
 
 constexpr int kSamples = 16;
 constexpr double kSnap = 1e-9;  // parameters of an edge nearer than this are one
+constexpr std::size_t kMostPairs = 2'000'000;  // of open edges that are compared
 
 using Side = Joint::Side;
 
@@ -116,12 +118,20 @@ struct Candidate {
     double far;
 };
 
+/// How far from a run its neighbour may be.
+double reach(const Run& r, double capture) { return std::min(capture, 0.1 * r.length); }
+
+bool boxes_near(const Run& a, const Run& b, double near) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (b.low[axis] > a.high[axis] + near || b.high[axis] < a.low[axis] - near) return false;
+    return true;
+}
+
 /// Where along a all of b runs, if it stays near.
 std::optional<Candidate> beside(const Composite& surface, const std::vector<Run>& runs, std::size_t i, std::size_t j, double capture) {
     const Run &a = runs[i], &b = runs[j];
-    const double near = std::min({capture, 0.1 * a.length, 0.1 * b.length});
-    for (int axis = 0; axis < 3; ++axis)
-        if (b.low[axis] > a.high[axis] + near || b.high[axis] < a.low[axis] - near) return {};
+    const double near = std::min(reach(a, capture), reach(b, capture));
+    if (!boxes_near(a, b, near)) return {};
     // An end of b that is near an end of a belongs to it.
     const auto place = [&](const Point& p, bool other_is_first) {
         const double to_first = distance(p, a.first), to_last = distance(p, a.last);
@@ -146,11 +156,20 @@ void capture_gaps(const Composite& surface, const ContinuityOptions& options, Fo
     std::vector<Run> runs;
     for (const Side& s : found.open) runs.push_back(run_of(surface, s));
     const auto group = [&](std::size_t i) { return options.surface.empty() ? std::string() : options.surface[runs[i].side.member]; };
+    std::vector<std::size_t> by_x(runs.size());
+    for (std::size_t i = 0; i < runs.size(); ++i) by_x[i] = i;
+    std::stable_sort(by_x.begin(), by_x.end(), [&](std::size_t i, std::size_t j) { return runs[i].low.x < runs[j].low.x; });
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;  // of runs whose boxes come near each other
+    for (std::size_t k = 0; k < by_x.size(); ++k)
+        for (std::size_t l = k + 1; l < by_x.size() && runs[by_x[l]].low.x <= runs[by_x[k]].high.x + reach(runs[by_x[k]], options.capture); ++l) {
+            if (group(by_x[k]) != group(by_x[l]) || !boxes_near(runs[by_x[k]], runs[by_x[l]], std::min(reach(runs[by_x[k]], options.capture), reach(runs[by_x[l]], options.capture)))) continue;
+            if (pairs.size() >= kMostPairs) throw Error(ErrorKind::budget, "more than " + std::to_string(kMostPairs) + " pairs of open edges are within " + to_text(options.capture) + " of each other: look for gaps within less (--capture)");
+            pairs.push_back({by_x[k], by_x[l]}), pairs.push_back({by_x[l], by_x[k]});
+        }
+    std::sort(pairs.begin(), pairs.end());
     std::vector<Candidate> candidates;
-    for (std::size_t i = 0; i < runs.size(); ++i)
-        for (std::size_t j = 0; j < runs.size(); ++j)
-            if (i != j && group(i) == group(j))
-                if (const auto c = beside(surface, runs, i, j, options.capture)) candidates.push_back(*c);
+    for (const auto& [i, j] : pairs)
+        if (const auto c = beside(surface, runs, i, j, options.capture)) candidates.push_back(*c);
     std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) { return x.far < y.far; });
     std::vector<std::vector<Side>> used(runs.size());
     const auto is_free = [&](std::size_t i, const Side& s) {
