@@ -98,16 +98,42 @@ std::vector<Side> open_runs(const Composite& surface, const Topology& topology) 
 struct Run {
     Side side;
     Point low, high, first, last;
-    double length = 0;
+    double length = 0, reach = 0;
 };
-Run run_of(const Composite& surface, const Side& side) {
-    Run r{side, {}, {}, position(surface, side, 0), position(surface, side, 1)};
+double length_between(const Composite& surface, const Side& s) {
+    double sum = 0;
+    for (int k = 0; k < kSamples; ++k) sum += distance(position(surface, s, k / double(kSamples)), position(surface, s, (k + 1) / double(kSamples)));
+    return sum;
+}
+/// Unit vector across an edge, in the surface, into the patch.
+Point inward(const Composite& surface, const Side& side) {
+    const Patch& patch = surface[side.member].patch;
+    const ParameterLine line = edge_line(patch, side.edge, std::min(side.t0, side.t1), std::max(side.t0, side.t1));
+    const Vec2 along{line.to.x - line.from.x, line.to.y - line.from.y}, at = patch.edge_point(side.edge, 0.5 * (side.t0 + side.t1));
+    const PointFrame f = patch.frame(at.x, at.y);
+    const auto derivative = [&](const Vec2& d) {
+        Point p;
+        for (int axis = 0; axis < 3; ++axis) p[axis] = f[axis].coefficient(1, 0) * d.x + f[axis].coefficient(0, 1) * d.y;
+        return p;
+    };
+    const Point t = derivative(along), c = derivative(line.cross);
+    return normalized(c - (dot(c, t) / dot(t, t)) * t);
+}
+Run run_of(const Composite& surface, const Side& side, double capture) {
+    Run r{side, {}, {}, position(surface, side, 0), position(surface, side, 1), 0, 0};
     r.low = r.high = r.first;
     Point before = r.first;
     for (int k = 1; k <= kSamples; ++k) {
         const Point p = position(surface, side, k / double(kSamples));
         for (int axis = 0; axis < 3; ++axis) r.low[axis] = std::min(r.low[axis], p[axis]), r.high[axis] = std::max(r.high[axis], p[axis]);
         r.length += distance(p, before), before = p;
+    }
+    // A neighbour is nearer than what is across the patch: the edges of a narrow strip are not each other's neighbours.
+    r.reach = std::min(capture, 0.1 * r.length);
+    const int edges = surface[side.member].patch.edges();
+    for (const int beside : {(side.edge + 1) % edges, (side.edge + edges - 1) % edges}) {
+        const double across = length_between(surface, {side.member, beside, 0, 1, 0});
+        if (across > 0.01 * r.reach) r.reach = std::min(r.reach, 0.1 * across);  // a collapsed edge says nothing
     }
     return r;
 }
@@ -118,9 +144,6 @@ struct Candidate {
     double far;
 };
 
-/// How far from a run its neighbour may be.
-double reach(const Run& r, double capture) { return std::min(capture, 0.1 * r.length); }
-
 bool boxes_near(const Run& a, const Run& b, double near) {
     for (int axis = 0; axis < 3; ++axis)
         if (b.low[axis] > a.high[axis] + near || b.high[axis] < a.low[axis] - near) return false;
@@ -128,9 +151,9 @@ bool boxes_near(const Run& a, const Run& b, double near) {
 }
 
 /// Where along a all of b runs, if it stays near.
-std::optional<Candidate> beside(const Composite& surface, const std::vector<Run>& runs, std::size_t i, std::size_t j, double capture) {
+std::optional<Candidate> beside(const Composite& surface, const std::vector<Run>& runs, std::size_t i, std::size_t j) {
     const Run &a = runs[i], &b = runs[j];
-    const double near = std::min(reach(a, capture), reach(b, capture));
+    const double near = std::min(a.reach, b.reach);
     if (!boxes_near(a, b, near)) return {};
     // An end of b that is near an end of a belongs to it.
     const auto place = [&](const Point& p, bool other_is_first) {
@@ -148,28 +171,30 @@ std::optional<Candidate> beside(const Composite& surface, const std::vector<Run>
         c.far = std::max(apart(surface, c.at_a, c.at_b).nearest, apart(surface, c.at_b, c.at_a).nearest);
         if (c.far < best.far) best = c;
     }
-    return best.far <= near ? std::optional<Candidate>(best) : std::nullopt;
+    // Two sheets that lie above each other, the sides of a thin plate, do not continue each other: both are inside on the same side.
+    if (!(best.far <= near) || dot(inward(surface, best.at_a), inward(surface, best.at_b)) > 0.5) return {};
+    return best;
 }
 
 /// Pairs runs of one surface that are near each other, the nearest first. What is left stays in `open`.
 void capture_gaps(const Composite& surface, const ContinuityOptions& options, FoundJoints& found) {
     std::vector<Run> runs;
-    for (const Side& s : found.open) runs.push_back(run_of(surface, s));
+    for (const Side& s : found.open) runs.push_back(run_of(surface, s, options.capture));
     const auto group = [&](std::size_t i) { return options.surface.empty() ? std::string() : options.surface[runs[i].side.member]; };
     std::vector<std::size_t> by_x(runs.size());
     for (std::size_t i = 0; i < runs.size(); ++i) by_x[i] = i;
     std::stable_sort(by_x.begin(), by_x.end(), [&](std::size_t i, std::size_t j) { return runs[i].low.x < runs[j].low.x; });
     std::vector<std::pair<std::size_t, std::size_t>> pairs;  // of runs whose boxes come near each other
     for (std::size_t k = 0; k < by_x.size(); ++k)
-        for (std::size_t l = k + 1; l < by_x.size() && runs[by_x[l]].low.x <= runs[by_x[k]].high.x + reach(runs[by_x[k]], options.capture); ++l) {
-            if (group(by_x[k]) != group(by_x[l]) || !boxes_near(runs[by_x[k]], runs[by_x[l]], std::min(reach(runs[by_x[k]], options.capture), reach(runs[by_x[l]], options.capture)))) continue;
+        for (std::size_t l = k + 1; l < by_x.size() && runs[by_x[l]].low.x <= runs[by_x[k]].high.x + runs[by_x[k]].reach; ++l) {
+            if (group(by_x[k]) != group(by_x[l]) || !boxes_near(runs[by_x[k]], runs[by_x[l]], std::min(runs[by_x[k]].reach, runs[by_x[l]].reach))) continue;
             if (pairs.size() >= kMostPairs) throw Error(ErrorKind::budget, "more than " + std::to_string(kMostPairs) + " pairs of open edges are within " + to_text(options.capture) + " of each other: look for gaps within less (--capture)");
             pairs.push_back({by_x[k], by_x[l]}), pairs.push_back({by_x[l], by_x[k]});
         }
     std::sort(pairs.begin(), pairs.end());
     std::vector<Candidate> candidates;
     for (const auto& [i, j] : pairs)
-        if (const auto c = beside(surface, runs, i, j, options.capture)) candidates.push_back(*c);
+        if (const auto c = beside(surface, runs, i, j)) candidates.push_back(*c);
     std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) { return x.far < y.far; });
     std::vector<std::vector<Side>> used(runs.size());
     const auto is_free = [&](std::size_t i, const Side& s) {

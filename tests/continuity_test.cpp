@@ -189,6 +189,13 @@ TEST(Continuity, PatchesFarApartAreNotJoined) {
     EXPECT_TRUE(found.joints.empty());
     EXPECT_EQ(found.open.size(), 8u);
 }
+TEST(Continuity, NarrowStripsAndThinPlatesHaveNoGaps) {
+    const Patch plate = quad_of([](double x, double y) { return Point{x, y, 0}; }, 0, 1, 0, 1), above = transformed(plate, Transform::translate({0, 0, 1e-3})),
+                strip = transformed(plate, Transform::scale({5e-3, 1, 1})), beside = transformed(plate, Transform::translate({1 + 1e-3, 0, 1e-3}));
+    EXPECT_TRUE(checked({{"plate", plate}, {"above", above}}).joints.empty());
+    EXPECT_TRUE(checked({{"strip", strip}}).joints.empty());
+    EXPECT_EQ(checked({{"plate", plate}, {"beside", beside}}).joints.size(), 1u);
+}
 TEST(Continuity, ASeamIsAJointOfAPatchWithItself) {
     Grid<Point> p;
     for (const Point& q : {Point{0, 0, 0}, Point{3, 1, 0}, Point{-3, 2, 0}, Point{0, 0, 0}}) p.push_back({q, q + Point{0, 0.2, 1}});
