@@ -143,15 +143,18 @@ Continuity find_continuity(const Composite& surface, const ContinuityOptions& op
         if (k >= joints) segments = line_segments(surface, joint);
         else
             for (const JointPart& p : found.joints[k].parts) add_segments(surface, joint, p, segments);
-        if (segments.empty()) joint.jumps.fill({0, HUGE_VAL, {}, {}});
+        if (segments.empty()) joint.jumps.fill({0, HUGE_VAL, {}, {}, HUGE_VAL});
         else joint.jumps = bound_jumps(segments, limits);
     });
     return result;
 }
 
-JointOrder order_of(const Joint& joint, const ContinuityOptions& options) {
+namespace {
+
+/// `upper`: which bound of a jump counts.
+JointOrder order_by(const Joint& joint, const ContinuityOptions& options, double JumpBound::*upper) {
     const std::array<double, kMeasures> tolerance{options.tolerance, options.tolerance, options.tolerance, options.angle, options.curvature};
-    const auto proved = [&](int m) { return joint.jumps[m].upper <= tolerance[m]; };
+    const auto proved = [&](int m) { return joint.jumps[m].*upper <= tolerance[m]; };
     const auto disproved = [&](int m) { return joint.jumps[m].lower > tolerance[m]; };
     JointOrder r;
     if (!proved(kC0)) {
@@ -168,6 +171,16 @@ JointOrder order_of(const Joint& joint, const ContinuityOptions& options) {
     if (holds("G1", {kG1})) r.geometric = holds("G2", {kG1, kG2}) ? "G2" : "G1";
     r.text = r.geometric.empty() ? "C0" : r.geometric;
     if (joint.affine && holds("C1", {kC1})) r.text = holds("C2", {kC1, kC2}) ? "C2" : "C1";
+    return r;
+}
+
+}  // namespace
+
+JointOrder order_of(const Joint& joint, const ContinuityOptions& options) {
+    const auto both = [](const JointOrder& o) { return o.geometric.empty() || o.geometric == o.text ? o.text : o.text + ", " + o.geometric; };
+    JointOrder r = order_by(joint, options, &JumpBound::upper);
+    const std::string inside = both(order_by(joint, options, &JumpBound::inside));
+    if (inside != both(r)) r.inside = inside;
     return r;
 }
 

@@ -55,6 +55,7 @@ struct JointOrder {
     /// The strongest of C2, C1, G2, G1, C0 that is proved; "not joined" where a gap is; "undecided" where not even that is known.
     std::string text;
     std::string geometric;               // G2, G1, or empty: of tangent planes and curvatures alone
+    std::string inside;                  // the order (and the geometric one) but for singular ends of the edge, where that says more; else empty
     std::vector<std::string> undecided;  // orders that would be stronger, neither proved nor disproved
 };
 JointOrder order_of(const Joint& joint, const ContinuityOptions& options);

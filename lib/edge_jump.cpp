@@ -65,7 +65,7 @@ TaylorModel cross_curvature(const EdgeSide::Jet& x, const Normal& n) {
 class Bounder {
 public:
     Bounder(const std::vector<EdgeSegment>& segments, const JumpLimits& limits) : segments_(segments), limits_(limits) {
-        bounds_.fill({0, kInfinite, segments.front().a.at(0.5), {}});
+        bounds_.fill({0, kInfinite, segments.front().a.at(0.5), {}, kInfinite});
         wanted_.fill(true);
     }
 
@@ -80,6 +80,7 @@ public:
             add(p.segment, p.middle - p.half / 2, p.half / 2);
             add(p.segment, p.middle + p.half / 2, p.half / 2);
         }
+        for (JumpBound& b : bounds_) b.upper = b.singular.empty() ? b.inside : kInfinite;
         return bounds_;
     }
 
@@ -139,13 +140,13 @@ private:
     void find_worst(int m) {
         if (settled_[m]) return;
         JumpBound& b = bounds_[m];
-        b.upper = -1, b.excluded.clear();
+        b.inside = -1, b.singular.clear();
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             const Piece& p = pieces_[i];
-            if (p.upper[m] == kInfinite && at_tip(p)) b.excluded.push_back(segments_[p.segment].a.at(p.middle < 0.5 ? 0 : 1));
-            else if (p.upper[m] > b.upper) b.upper = p.upper[m], worst_[m] = i;
+            if (p.upper[m] == kInfinite && at_tip(p)) b.singular.push_back(segments_[p.segment].a.at(p.middle < 0.5 ? 0 : 1));
+            else if (p.upper[m] > b.inside) b.inside = p.upper[m], worst_[m] = i;
         }
-        b.upper = std::max(b.upper, b.lower);
+        b.inside = std::max(b.inside, b.lower);
         if (b.lower == 0) b.at = segments_[pieces_[worst_[m]].segment].a.at(pieces_[worst_[m]].middle);
     }
     /// The first measure that more pieces can make sharper.
@@ -154,8 +155,8 @@ private:
             if (settled_[m]) continue;
             find_worst(m);
             const JumpBound& b = bounds_[m];
-            const bool enough = b.upper <= 0.01 * limits_.tolerance[m] || (b.upper < kInfinite && b.upper - b.lower <= limits_.relative * b.upper) || (b.upper <= limits_.tolerance[m] && halved_[m] > 64);
-            const double shortest = b.upper < kInfinite ? kShortest : kTip;
+            const bool enough = b.inside <= 0.01 * limits_.tolerance[m] || (b.inside < kInfinite && b.inside - b.lower <= limits_.relative * b.inside) || (b.inside <= limits_.tolerance[m] && halved_[m] > 64);
+            const double shortest = b.inside < kInfinite ? kShortest : kTip;
             if (!enough && pieces_[worst_[m]].half > shortest / 2 && halved_[m] < limits_.max_halvings && !stalled(m)) return m;
             settled_[m] = true, wanted_[m] = false;
         }
@@ -165,8 +166,8 @@ private:
     /// Have twice as many pieces gained less than a third? Bounds that converge at all gain three quarters or more.
     bool stalled(int m) {
         if (halved_[m] < 128 || (halved_[m] & (halved_[m] - 1)) != 0) return false;
-        const bool stuck = !(bounds_[m].upper < 0.67 * before_[m]);
-        before_[m] = bounds_[m].upper;
+        const bool stuck = !(bounds_[m].inside < 0.67 * before_[m]);
+        before_[m] = bounds_[m].inside;
         return stuck;
     }
 

@@ -20,7 +20,8 @@ enum Measure5 { kC0, kC1, kC2, kG1, kG2, kMeasures };
 struct JumpBound {
     double lower = 0, upper = 0;
     Vec2 at;                     // where lower was found, or, when it is 0, where the bound is worst; parameters of side a
-    std::vector<Vec2> excluded;  // ends of the edge next to which (2^-12 of its length) nothing has a bound; upper holds elsewhere
+    std::vector<Vec2> singular;  // ends of the edge next to which (2^-12 of its length) nothing has a bound: then upper is infinite,
+    double inside = 0;           // and the bound on the rest is this; else it is upper
 };
 
 /// A part of an edge within one cell of either side.

@@ -96,7 +96,7 @@ void judge_promises(Report& r) {
     std::size_t first = 0;  // of the surface's patches among those selected
     for (const Examined& e : r.surfaces) {
         for (std::size_t k = 0; k < e.residuals.size(); ++k) {
-            r.judge(e.name + ": " + e.data.promises[k].what, e.residuals[k].lower, e.residuals[k].upper);
+            r.judge(e.name + ": " + e.data.promises[k].what, e.residuals[k].lower, e.residuals[k].inside);
         }
         for (const Joint& j : r.continuity.lines) {
             if (j.a.member < first || std::find(e.data.smooth.begin(), e.data.smooth.end(), j.a.member - first) == e.data.smooth.end() || r.selection.surface[j.a.member] != e.name) continue;
@@ -112,9 +112,9 @@ std::string pair_text(const Vec2& at) { return "[" + json_text(at.x) + ", " + js
 
 std::string json_of(const JumpBound& b) {
     std::string text = "{\"lower\": " + json_text(b.lower) + ", \"upper\": " + json_text(b.upper) + ", \"at\": " + pair_text(b.at);
-    if (!b.excluded.empty()) {
-        text += ", \"excluded\": [";
-        for (std::size_t k = 0; k < b.excluded.size(); ++k) text += (k ? ", " : "") + pair_text(b.excluded[k]);
+    if (!b.singular.empty()) {
+        text += ", \"inside\": " + json_text(b.inside) + ", \"singular\": [";
+        for (std::size_t k = 0; k < b.singular.size(); ++k) text += (k ? ", " : "") + pair_text(b.singular[k]);
         text += "]";
     }
     return text + "}";
@@ -129,7 +129,7 @@ std::string json_of(const Report& r, const Joint& j) {
     const JointOrder order = order_of(j, r.options);
     std::string text = "{\"a\": " + json_of(r, j, j.a) + ", \"b\": " + json_of(r, j, j.b);
     for (int m = 0; m < kMeasures; ++m) text += std::string(m == kC0 ? ",\n   \"" : ", \"") + kNames[m] + "\": " + json_of(j.jumps[std::size_t(m)]);
-    text += ",\n   \"order\": " + json_text(order.text) + ", \"geometric\": " + (order.geometric.empty() ? "null" : json_text(order.geometric)) + ", \"undecided\": [";
+    text += ",\n   \"order\": " + json_text(order.text) + ", \"geometric\": " + (order.geometric.empty() ? "null" : json_text(order.geometric)) + ", \"inside\": " + (order.inside.empty() ? "null" : json_text(order.inside)) + ", \"undecided\": [";
     for (std::size_t k = 0; k < order.undecided.size(); ++k) text += (k ? ", " : "") + json_text(order.undecided[k]);
     return text + "], \"kind\": " + json_text(kKinds[int(j.kind)]) + ", \"in_step\": " + (j.affine ? "true" : "false") + "}";
 }
@@ -148,7 +148,7 @@ std::string json_of(const Report& r, const Examined& e) {
             (c.remedy.empty() ? "null" : json_text(c.remedy)));
     for (std::size_t k = 0; k < e.residuals.size(); ++k) {
         const JumpBound& b = e.residuals[k];
-        add("\"what\": " + json_text(e.data.promises[k].what) + ", \"gap\": " + json_text(b.upper) + ", \"tolerance\": " + json_text(r.options.tolerance) + ", \"holds\": " + (b.upper <= r.options.tolerance ? "true" : "false") +
+        add("\"what\": " + json_text(e.data.promises[k].what) + ", \"gap\": " + json_text(b.upper) + ", \"tolerance\": " + json_text(r.options.tolerance) + ", \"holds\": " + (b.inside <= r.options.tolerance ? "true" : "false") +
             ", \"residual\": " + json_of(b));
     }
     return "{\"name\": " + json_text(e.name) + ", \"compatible\": " + (e.compatible() ? "true" : "false") + ", \"conditions\": [" + conditions + "]}";
@@ -182,7 +182,7 @@ std::string brief(double x, bool up) {
 
 /// "0.00123" where the bounds agree on it, else "< 1e-15".
 std::string cell(const JumpBound& b) {
-    std::string text = (b.lower >= 0.9 * b.upper ? "" : "<") + brief(b.upper, true) + (b.excluded.empty() ? "" : "*");
+    std::string text = (b.lower >= 0.9 * b.inside ? "" : "<") + brief(b.inside, true) + (b.singular.empty() ? "" : "*");
     text.insert(0, text.size() < 10 ? 10 - text.size() : 0, ' ');
     return text;
 }
@@ -202,6 +202,7 @@ void print_joints(std::ostream& out, const Report& r, const std::vector<Joint>& 
         for (const int m : {kC0, kC1, kC2, kG1, kG2}) out << (m == kG1 ? " " : "") << cell(j->jumps[std::size_t(m)]);
         out << "  " << order.text << (order.geometric.empty() || order.geometric == order.text ? "" : ", " + order.geometric);
         for (const std::string& u : order.undecided) out << (u == "C0" ? "" : "; " + u + " undecided");
+        if (!order.inside.empty()) out << "; " << order.inside << " but for the ends*";
         if (j->kind == Joint::Kind::seam || j->kind == Joint::Kind::t_joint || j->kind == Joint::Kind::gap) out << " (" << kKinds[int(j->kind)] << ")";
         out << (j->affine ? "" : " (other parametrisation)") << "\n";
     }
@@ -217,7 +218,7 @@ void print_surface(std::ostream& out, const Report& r, const Examined& e) {
     }
     for (std::size_t k = 0; k < e.residuals.size(); ++k) {
         const JumpBound& b = e.residuals[k];
-        out << "  " << e.data.promises[k].what << ", proved within " << brief(b.upper, true) << (b.upper <= r.options.tolerance ? "" : " at worst, at least " + brief(b.lower, false)) << "\n";
+        out << "  " << e.data.promises[k].what << ", proved within " << brief(b.inside, true) << (b.singular.empty() ? "" : " (but for 1/4096 of the edge at singular ends)") << (b.inside <= r.options.tolerance ? "" : " at worst, at least " + brief(b.lower, false)) << "\n";
     }
 }
 
@@ -229,8 +230,8 @@ void print_text(std::ostream& out, const Report& r) {
     if (!c.joints.empty()) out << "\nEdges: largest jumps, proved for the whole edge\n", print_joints(out, r, c.joints);
     if (!c.lines.empty()) out << "\nLines between the cells of a patch\n", print_joints(out, r, c.lines);
     for (const auto* list : {&c.joints, &c.lines})
-        if (std::any_of(list->begin(), list->end(), [](const Joint& j) { return std::any_of(j.jumps.begin(), j.jumps.end(), [](const JumpBound& b) { return !b.excluded.empty(); }); })) {
-            out << "\n* but for 1/4096 of the edge, next to an end where the surface is singular (a pole or apex)\n";
+        if (std::any_of(list->begin(), list->end(), [](const Joint& j) { return std::any_of(j.jumps.begin(), j.jumps.end(), [](const JumpBound& b) { return !b.singular.empty(); }); })) {
+            out << "\n* without a bound for 1/4096 of the edge, next to an end where the surface is singular (a pole or apex)\n";
             break;
         }
     if (!c.poles.empty()) out << "\nCollapsed edges\n";
