@@ -163,12 +163,15 @@ private:
         return kMeasures;
     }
 
-    /// Have twice as many pieces gained less than a third? Bounds that converge at all gain three quarters or more.
+    /// Going on as since the last doubling of the pieces, would the budget end before anything is decided?
     bool stalled(int m) {
         if (halved_[m] < 128 || (halved_[m] & (halved_[m] - 1)) != 0) return false;
-        const bool stuck = !(bounds_[m].inside < 0.67 * before_[m]);
-        before_[m] = bounds_[m].inside;
-        return stuck;
+        const JumpBound& b = bounds_[m];
+        const bool disproved = b.lower > limits_.tolerance[m];
+        const double excess = disproved ? b.inside - b.lower : b.inside, goal = disproved ? limits_.relative * b.inside : limits_.tolerance[m];
+        const double rate = excess / before_[m], at_end = excess * std::pow(rate, std::log2(double(limits_.max_halvings) / halved_[m]));
+        before_[m] = excess;
+        return !(rate < 0.67) || at_end > 2 * goal;
     }
 
     const std::vector<EdgeSegment>& segments_;
