@@ -42,18 +42,28 @@ Interval power(const Interval& x, int n) {
     return r;
 }
 
-/// Coefficient of a^k b^l in f(a * along + b * across), from the Taylor coefficients of f in (u,v).
-Interval directional(const JetUV<Interval, 3>& f, const Interval (&along)[2], const double (&across)[2], int k, int l) {
-    Interval sum(0);
-    for (int i = 0; i <= k + l; ++i) {
-        const int j = k + l - i;
-        Interval factor(0);
-        for (int m = std::max(0, k - j); m <= std::min(i, k); ++m)
-            factor = factor + Interval(binomial(i, m) * binomial(j, k - m)) * power(along[0], m) * power(across[0], i - m) * power(along[1], k - m) * power(across[1], j - k + m);
-        if (factor.lo != 0 || factor.hi != 0) sum = sum + factor * f.coefficient(i, j);
+/// Coefficients of a^k b^l in f(a * along + b * across), k + l <= 3, from the Taylor coefficients of f in (u,v).
+class Directional {
+public:
+    Directional(const Interval (&along)[2], const double (&across)[2]) {
+        for (int k = 0; k <= 3; ++k)
+            for (int l = 0; k + l <= 3; ++l)
+                for (int i = 0; i <= k + l; ++i) {
+                    const int j = k + l - i;
+                    for (int m = std::max(0, k - j); m <= std::min(i, k); ++m)
+                        factor_[k][l][i] += Interval(binomial(i, m) * binomial(j, k - m)) * power(along[0], m) * power(across[0], i - m) * power(along[1], k - m) * power(across[1], j - k + m);
+                }
     }
-    return sum;
-}
+    Interval operator()(const JetUV<Interval, 3>& f, int k, int l) const {
+        Interval sum(0);
+        for (int i = 0; i <= k + l; ++i)
+            if (const Interval& x = factor_[k][l][i]; x.lo != 0 || x.hi != 0) sum += x * f.coefficient(i, k + l - i);
+        return sum;
+    }
+
+private:
+    Interval factor_[4][4][4];  // of f_ij, j = k + l - i
+};
 
 /// f(c + D) = sum at[k] D^k, the highest coefficient anywhere in over[k]; of the orders that are bounded, the one with the least rest.
 TaylorModel expanded(const Interval* at, const Interval* over, int most, const TaylorModel& D) {
@@ -184,19 +194,24 @@ EdgeSide::Jet EdgeSide::enclosed(const TaylorModel& s) const {
         return Box{inside(Interval(line_.from.x) + along[0] * t, cell_.u0, cell_.u1), inside(Interval(line_.from.y) + along[1] * t, cell_.v0, cell_.v1)};
     };
     const auto at = patch_.enclose(place(Interval(centre))).over, over = patch_.enclose(place(reach)).over;
+    const Directional directional(along, across);
     Jet r;
-    for (int axis = 0; axis < 3; ++axis)
+    for (int axis = 0; axis < 3; ++axis) {
+        Interval a_all[4][4], b_all[4][4];
+        for (int k = 0; k <= 3; ++k)
+            for (int l = 0; l <= 2 && k + l <= 3; ++l) a_all[k][l] = directional(at[axis], k, l), b_all[k][l] = directional(over[axis], k, l);
         for (int n = 0; n < Jet2::size; ++n) {
             const auto [k, l] = Jet2::powers[std::size_t(n)];
             Interval a[4], b[4];
             const int most = 3 - k - l;
             for (int m = 0; m <= most; ++m) {
                 const Interval times(binomial(k + m, k));
-                a[m] = times * directional(at[axis], along, across, k + m, l);
-                b[m] = times * directional(over[axis], along, across, k + m, l);
+                a[m] = times * a_all[k + m][l];
+                b[m] = times * b_all[k + m][l];
             }
             r[axis].c[n] = expanded(a, b, most, D);
         }
+    }
     return r;
 }
 

@@ -7,18 +7,17 @@ namespace {
 
 using Models = Vec3<TaylorModel>;
 
-/// A curve over [from, to], as a model over [middle - half, middle + half] of s in [0,1].
-Models model_of(const Curve& curve, double from, double to, double middle, double half) {
+/// A curve over [from, to], `exact` its polynomials there if it has them, as a model over [middle - half, middle + half] of s in [0,1].
+Models model_of(const Curve& curve, const Vec3<Polynomial>& exact, double from, double to, double middle, double half) {
     const Interval step = Interval(to) - Interval(from), m = Interval(from) + step * Interval(middle), h = step * Interval(half);
-    const Interval reach(std::max(curve.begin(), (m - h).lo), std::min(curve.end(), (m + h).hi));
     Models r;
-    const Vec3<Polynomial> exact = curve(Polynomial::variable_u(Interval(from, to)));
     if (exact.x.exists() && exact.y.exists() && exact.z.exists()) {
         const TaylorModel t = TaylorModel::linear(m - Interval(mid(Interval(from, to))), h);
         for (int axis = 0; axis < 3; ++axis)
             for (int k = exact[axis].degree_u(); k >= 0; --k) r[axis] = r[axis] * t + TaylorModel(exact[axis].coefficient(k, 0));
         return r;
     }
+    const Interval reach(std::max(curve.begin(), (m - h).lo), std::min(curve.end(), (m + h).hi));
     Vec3<Interval> at[4], over[4];
     const Interval centre = clip(m, {curve.begin(), curve.end()});
     curve.taylor(centre, 3, at);
@@ -57,7 +56,7 @@ JumpBound bound_residual(const Patch& patch, const Promise& promise, double tole
         const auto place = [&](double s) { return s == 0 ? from : s == 1 ? to : Vec2{from.x + s * (to.x - from.x), from.y + s * (to.y - from.y)}; };
         const EdgeSide side(patch, {place(s0), place(s1), cross}, cross);
         EdgeSegment e{side, side, {}, {}, {}, promise.derivative};
-        e.curve = [curve, a = t0, b = t1](double middle, double half) { return model_of(curve, a, b, middle, half); };
+        e.curve = [curve, exact = curve(Polynomial::variable_u(Interval(t0, t1))), a = t0, b = t1](double middle, double half) { return model_of(curve, exact, a, b, middle, half); };
         segments.push_back(std::move(e));
     }
     JumpLimits limits;
