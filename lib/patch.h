@@ -61,6 +61,8 @@ public:
         virtual Enclosure enclose(const Box& box) const = 0;
         /// Encloses every position over the box; cheaper than enclose().
         virtual Vec3<Interval> enclose_points(const Box& box) const = 0;
+        /// As Patch::exact_cell().
+        virtual std::vector<Polynomial> exact_cell(std::size_t i, std::size_t j) const = 0;
     };
     explicit Patch(std::shared_ptr<const Concept> impl) : impl_(std::move(impl)) {}
 
@@ -88,6 +90,9 @@ public:
     std::vector<BezierCell> bezier_cells() const { return impl_->bezier_cells(); }
     Enclosure enclose(const Box& box) const { return impl_->enclose(box); }
     Vec3<Interval> enclose_points(const Box& box) const { return impl_->enclose_points(box); }
+    /// The surface between lines_u()[i], lines_u()[i+1] and lines_v()[j], lines_v()[j+1], these included: polynomials x, y, z, or x, y, z
+    /// and their common denominator, in (u,v) minus the middle of the cell. Empty where it is neither polynomial nor known as rational.
+    std::vector<Polynomial> exact_cell(std::size_t i, std::size_t j) const { return impl_->exact_cell(i, j); }
     /// Encloses the exact position at (u,v).
     Vec3<Interval> enclose_point(double u, double v) const;
 

@@ -99,6 +99,12 @@ public:
         all.centre = run<2>(Interval(all.u), Interval(all.v));
         return all;
     }
+    std::vector<Polynomial> exact_cell(std::size_t i, std::size_t j) const override {
+        if (const auto* p = exact(i, j)) return {p->x, p->y, p->z};
+        auto form = homogeneous_form({edges_u_[i], edges_u_[i + 1]}, {edges_v_[j], edges_v_[j + 1]});
+        if (!std::all_of(form.begin(), form.end(), [](const Polynomial& x) { return x.exists(); })) form.clear();
+        return form;
+    }
     Vec3<Interval> enclose_points(const Box& box) const override {
         const std::size_t i0 = cell(breaks_u_, box.u.lo), i1 = last_cell(edges_u_, i0, box.u.hi);
         const std::size_t j0 = cell(breaks_v_, box.v.lo), j1 = last_cell(edges_v_, j0, box.v.hi);

@@ -4,7 +4,9 @@
 
 #include "io/bv.h"
 #include "io/extension.h"
+#include "curves/modify.h"
 #include "patches/transformed.h"
+#include "promises.h"
 #include "registry.h"
 #include "suggest.h"
 
@@ -19,20 +21,47 @@ void append(ControlNet& net, const ControlNet& more) {
     net.indices.insert(net.indices.end(), more.indices.begin(), more.indices.end());
     for (const auto& rod : more.rods) net.rods.push_back({rod[0] + first, rod[1] + first});
 }
+/// A member of a composite, and where its patches begin there.
+struct Examined {
+    std::string name;
+    std::size_t first_patch;
+    std::function<DataReport()> examine;
+};
+DataReport together(const std::vector<Examined>& members) {
+    DataReport all;
+    for (const Examined& m : members) {
+        DataReport r = m.examine();
+        for (Condition& c : r.conditions) c.what = m.name + ": " + c.what, all.conditions.push_back(c);
+        for (const std::size_t p : r.smooth) all.smooth.push_back(p + m.first_patch);
+        for (Promise& p : r.promises) p.what = m.name + ": " + p.what, p.patch += m.first_patch, all.promises.push_back(p);
+    }
+    return all;
+}
+
+/// Conditions are those of the data before the map.
+DataReport moved(DataReport r, const Transform& map) {
+    Transform linear = map;
+    for (auto& row : linear.m) row[3] = 0;
+    for (Promise& p : r.promises) p.curve = transformed(p.curve, p.derivative == 0 ? map : linear);
+    return r;
+}
 }  // namespace
 
 // A member with one patch gives it its name, a member with several puts its name before theirs: "body/lid#2".
 BuiltSurface build_composite(const Json& j, SceneBuilder& scene) {
     BuiltSurface all{Composite{}};
     std::set<std::string> names;
+    std::vector<Examined> examined;
     for (const Json& m : scene.values().list(j.at("members", "the surfaces that belong together"), 1, 0, "surfaces")) {
         const BuiltSurface member = scene.surface(m);
         const std::string name = m.is(Json::Kind::string) ? m.string() : "#" + std::to_string(names.size());
         if (!names.insert(name).second) m.fail("found " + quoted(name) + " for the second time, expected every member once");
+        if (member.examine) examined.push_back({name, all.patches.size(), member.examine});
         for (const Member& p : member.patches) all.patches.push_back({p.name.empty() ? name : name + "/" + p.name, p.patch});
         if (all.patches.size() > kMaxPatches) m.fail("found more than " + std::to_string(kMaxPatches) + " patches, expected fewer");
         append(all.net, member.net);
     }
+    if (!examined.empty()) all.examine = [examined] { return together(examined); };
     return all;
 }
 
@@ -41,6 +70,7 @@ BuiltSurface build_transformed_surface(const Json& j, SceneBuilder& scene) {
     const Transform m = scene.values().transform(j);
     for (Member& p : s.patches) p.patch = transformed(p.patch, m);
     for (Point& p : s.net.points) p = m.point(p);
+    if (s.examine) s.examine = [m, before = s.examine] { return moved(before(), m); };
     return s;
 }
 

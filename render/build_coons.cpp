@@ -5,6 +5,7 @@
 #include "patches/gordon.h"
 #include "patches/lagrange.h"
 #include "patches/network.h"
+#include "promises.h"
 #include "registry.h"
 #include "repair.h"
 
@@ -36,6 +37,13 @@ std::array<Curve, 4> four_curves(const Json& j, const char* key, const char* mea
     return {c[0], c[1], c[2], c[3]};
 }
 
+/// The whole surface keeps promises; a part of its construction does not.
+BuiltSurface examined(Patch patch, Part part, std::function<DataReport()> by) {
+    BuiltSurface s(std::move(patch));
+    if (part == Part::sum) s.examine = std::move(by);
+    return s;
+}
+
 std::vector<double> nodes(const Json& j, const char* key, const SceneValues& values) {
     return values.numbers(j.at(key, "the parameters of the curves"), 2, most_nodes, "parameters");
 }
@@ -50,7 +58,7 @@ CoonsCurves frame_of(const Json& j, SceneBuilder& scene) {
 BuiltSurface build_coons(const Json& j, SceneBuilder& scene) {
     const auto blend = blend_of(j, scene.values());
     const Part part = part_of(j, scene.values());
-    return fitted(frame_of(j, scene), j, scene, [&](const CoonsCurves& c) { return make_coons(c, blend, part); });
+    return fitted(frame_of(j, scene), j, scene, [&](const CoonsCurves& c) { return examined(make_coons(c, blend, part), part, [c] { return examine(c); }); });
 }
 
 BuiltSurface build_coons_hermite(const Json& j, SceneBuilder& scene) {
@@ -58,7 +66,9 @@ BuiltSurface build_coons_hermite(const Json& j, SceneBuilder& scene) {
                            four_curves(j, "g", "the curves x(u,0), x_v(u,0), x_v(u,1), x(u,1)", scene)};
     const Twist twist = twist_of(j, scene.values(), Twist::compatible);
     const Part part = part_of(j, scene.values());
-    return fitted(HermiteCurves{data, twist}, j, scene, [&](const HermiteCurves& d) { return make_coons_hermite(d.data, twist, part); });
+    return fitted(HermiteCurves{data, twist}, j, scene, [&](const HermiteCurves& d) {
+        return examined(make_coons_hermite(d.data, twist, part), part, [data = d.data, twist] { return examine(data, twist); });
+    });
 }
 
 BuiltSurface build_gordon(const Json& j, SceneBuilder& scene) {
@@ -69,7 +79,10 @@ BuiltSurface build_gordon(const Json& j, SceneBuilder& scene) {
                                 scene.curves(j.at("v_curves", "the curves x(u_nodes[i], v)"), 2, most_nodes), nodes(j, "u_nodes", values)};
     const GordonBlend kind = blend ? blends[values.word(*blend, {"lagrange", "hermite"})] : GordonBlend::lagrange;
     const Part part = part_of(j, values);
-    return fitted(network, j, scene, [&](const GordonNetwork& n) { return make_gordon(n, kind, part); });
+    return fitted(network, j, scene, [&](const GordonNetwork& n) {
+        const Patch patch = make_gordon(n, kind, part);
+        return examined(patch, part, [n, kind, domain = patch.rect()] { return examine(n, kind, domain); });
+    });
 }
 
 BuiltSurface build_lagrange(const Json& j, SceneBuilder& scene) {
@@ -109,7 +122,9 @@ BuiltSurface build_network(const Json& j, SceneBuilder& scene) {
     const auto cross = j.find("cross");
     if (!cross || cross->is(Json::Kind::string)) {
         if (cross) values.word(*cross, {"finite_difference"});
-        return fitted(network, j, scene, [&](const Network& n) { return make_network(n, twist, part); });
+        return fitted(network, j, scene, [&](const Network& n) {
+            return examined(make_network(n, twist, part), part, [n, twist] { return examine(n, nullptr, twist); });
+        });
     }
     if (repair_wanted(j, scene))
         j.at("repair", "true or false").expected("no repair of a network with twists or cross derivatives of its own: they would have to change places with the curves");
@@ -121,9 +136,8 @@ BuiltSurface build_network(const Json& j, SceneBuilder& scene) {
     const std::size_t m = network.a.size(), n = network.b.size();
     const auto curves = [&](const char* key, const char* meaning, std::size_t count) { return scene.curves(cross->at(key, meaning), count, count); };
     try {
-        if (twists) return make_network(network, from_twists(network, values.grid(*twists, 2, 2, 1000)), twist, part);
-        const CrossDerivatives given{curves("A", "the curves x_u(i,v), one for every curve a", m), curves("B", "the curves x_v(u,j), one for every curve b", n)};
-        return make_network(network, given, twist, part);
+        const CrossDerivatives given = twists ? from_twists(network, values.grid(*twists, 2, 2, 1000)) : CrossDerivatives{curves("A", "the curves x_u(i,v), one for every curve a", m), curves("B", "the curves x_v(u,j), one for every curve b", n)};
+        return examined(make_network(network, given, twist, part), part, [network, given, twist] { return examine(network, &given, twist); });
     } catch (const IncompatibleError& error) {
         const auto diagnosis = cure(network);
         if (diagnosis.fits || diagnosis.misfit.empty()) throw;

@@ -1,6 +1,7 @@
 // build_translational.cpp -- surfaces that a scene file gives by curves to move or to blend as control polygons.
 #include "patches/control_net.h"
 #include "patches/translational.h"
+#include "promises.h"
 #include "registry.h"
 #include "repair.h"
 
@@ -18,7 +19,7 @@ SplineCurve spline(const Json& j, SceneBuilder& scene, const char* key) {
 }  // namespace
 
 BuiltSurface build_translational_blend(const Json& j, SceneBuilder& scene) {
-    return fitted(frame_of(j, scene), j, scene, [](const CoonsCurves& c) { return make_translational_blend(c); });
+    return fitted(frame_of(j, scene), j, scene, [](const CoonsCurves& c) { return BuiltSurface(make_translational_blend(c)).examined([c] { return examine(c); }); });
 }
 
 BuiltSurface build_translational(const Json& j, SceneBuilder& scene) {

@@ -5,6 +5,7 @@
 #include "patches/nielson.h"
 #include "patches/side_vertex.h"
 #include "patches/three_curves.h"
+#include "promises.h"
 #include "registry.h"
 #include "repair.h"
 
@@ -97,9 +98,16 @@ BuiltSurface build_coons_triangle(const Json& j, SceneBuilder& scene) {
     const auto named = j.find("part");
     const std::size_t part = named ? scene.values().word(*named, method.parts) : 0;
     const Three edges = three(j, "edges", "the edges [E1: B to C, E2: C to A, E3: A to B]", scene);
-    if (!method.along) return fitted(edges, j, scene, [&](const Three& e) { return method.build(j, scene, {e, e}, part); });
+    // A part of the construction keeps no promises.
+    const auto examined = [&](Patch patch, const TriangleCurves& c) {
+        BuiltSurface s(std::move(patch));
+        if (part != 0) return s;
+        if (method.along && method.along == std::string("cross")) return s.examined([c] { return examine_triangle(c.edges, c.along); });
+        return s.examined([c] { return examine_triangle(c.edges); });
+    };
+    if (!method.along) return fitted(edges, j, scene, [&](const Three& e) { return examined(method.build(j, scene, {e, e}, part), {e, e}); });
     const TriangleCurves curves{edges, three(j, method.along, along_meaning(method.along), scene)};
-    return fitted(curves, j, scene, [&](const TriangleCurves& c) { return method.build(j, scene, c, part); });
+    return fitted(curves, j, scene, [&](const TriangleCurves& c) { return examined(method.build(j, scene, c, part), c); });
 }
 
 }  // namespace isoparm

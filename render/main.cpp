@@ -17,6 +17,7 @@ namespace {
 const Command* const kCommands[] = {
     &info_command,        // what is in a scene
     &eval_command,        // a point of a surface, its derivatives, normal and curvatures
+    &check_command,       // how patches join
     &tessellate_command,  // a mesh whose error is proved
     &verify_command,      // any mesh against a surface
     &render_command,      // a ray-traced picture
@@ -24,7 +25,7 @@ const Command* const kCommands[] = {
     &limit_command,       // against OpenSubdiv
     &study_command,       // how well methods tessellate
 };
-const std::vector<std::string> kNotBuiltYet = {"check", "diff"};
+const std::vector<std::string> kNotBuiltYet = {"diff"};
 
 std::string help() {
     std::string text = "usage: isoparm COMMAND ...\n\nFrom boundary curves to surfaces, to meshes of proved error, to ray-traced pictures.\n\n";
@@ -34,7 +35,7 @@ std::string help() {
         text += "  " + name + c->summary + "\n";
     }
     return text + R"(
-isoparm COMMAND --help tells more; --version prints the version. Not built yet: check, diff.
+isoparm COMMAND --help tells more; --version prints the version. Not built yet: diff.
 Every command knows --quiet and --threads N (or ISOPARM_THREADS). Results go to stdout, messages to stderr.
 
 Exit codes: 0 success, 1 success with a warning, 2 something could not be proved or failed a check, 3 not comparable,

@@ -1,6 +1,7 @@
 // scene.h -- a scene as a value: what a scene file says, resolved, with nothing left to look up.
 #pragma once
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +13,8 @@
 
 namespace isoparm {
 
+struct DataReport;  // promises.h
+
 using Color = Vec3<double>;  // linear RGB inside the program; scene files give sRGB values in [0,1]
 
 /// A named surface: one patch, or the members of a composite or of an imported file.
@@ -19,6 +22,7 @@ struct Surface {
     std::string name, type;
     Composite patches;
     std::string detail;  // for people: "degree 3 x 3, rational"
+    std::function<DataReport()> examine;  // its data and what it promises of them; empty where it promises nothing
 };
 
 /// Lines u = const and v = const drawn on a surface: how many of each (ends included), in equal steps of the domain.

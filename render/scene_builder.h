@@ -25,6 +25,9 @@ struct BuiltSurface {
     Composite patches;  // one patch has the name "" until its surface gets one
     ControlNet net;
     std::string detail;
+    std::function<DataReport()> examine;  // as Surface::examine
+
+    BuiltSurface& examined(std::function<DataReport()> by) { return examine = std::move(by), *this; }
 };
 
 class SceneBuilder {

@@ -193,7 +193,7 @@ void check_version(const Json& root) {
 Surface finished(const std::string& name, const std::string& type, BuiltSurface built) {
     for (Member& m : built.patches)
         if (m.name.empty()) m.name = name;
-    return {name, type, std::move(built.patches), built.detail};
+    return {name, type, std::move(built.patches), built.detail, built.examine};
 }
 
 Scene read_scene(const Json& root, const std::map<std::string, double>& overrides) {

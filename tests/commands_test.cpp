@@ -13,12 +13,12 @@ TEST(Commands, HelpAndVersion) {
     expect("help eval", 0, "usage: isoparm eval");
     expect("--version", 0, "isoparm ");
     expect("", 64, "usage: isoparm COMMAND");
-    for (const char* c : {"info", "eval", "tessellate", "verify", "render", "figures", "limit"}) expect(std::string(c) + " --help", 0, "usage: isoparm " + std::string(c));
+    for (const char* c : {"info", "eval", "tessellate", "verify", "check", "render", "figures", "limit"}) expect(std::string(c) + " --help", 0, "usage: isoparm " + std::string(c));
 }
 TEST(Commands, UsageErrorsSuggest) {
     expect("rendr x", 64, "did you mean \"render\"?");
-    expect("check x", 64, "not built yet");
-    for (const std::string c : {"check", "diff"}) expect(c + " --help", 0, "isoparm " + c + ": not built yet");
+    expect("diff x", 64, "not built yet");
+    expect("diff --help", 0, "isoparm diff: not built yet");
     expect("info " + scene("coons") + " --jsn", 64, "did you mean \"--json\"?");
     expect("info", 64, "expected one scene");
     expect("info a b", 64, "expected one scene");

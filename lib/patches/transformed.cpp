@@ -57,6 +57,16 @@ public:
     }
 
     Vec3<Interval> enclose_points(const Box& box) const override { return map_.point(patch_.enclose_points(box)); }
+    std::vector<Polynomial> exact_cell(std::size_t i, std::size_t j) const override {
+        const auto x = patch_.exact_cell(i, j);
+        if (x.empty()) return {};
+        auto y = x;  // a denominator stays
+        for (int axis = 0; axis < 3; ++axis) {
+            y[axis] = (x.size() == 4 ? x[3] : Polynomial(1)) * Polynomial(map_.m[axis][3]);
+            for (int k = 0; k < 3; ++k) y[axis] = y[axis] + x[k] * Polynomial(map_.m[axis][k]);
+        }
+        return y;
+    }
 
 private:
     Patch patch_;

@@ -1,0 +1,193 @@
+#include "edge_jump.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scalar/elementary.h"
+
+namespace isoparm {
+namespace {
+
+using Sizes = std::array<Interval, kMeasures>;
+using Models = Vec3<TaylorModel>;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kTip = 0x1p-12;       // pieces of an edge of which nothing is known are not made shorter
+constexpr double kShortest = 0x1p-44;  // nor any other
+const Interval kUnknown{0, kInfinite};
+
+Models part(const EdgeSide::Jet& x, int n) { return {x.x.c[n], x.y.c[n], x.z.c[n]}; }
+TaylorModel twice(const TaylorModel& x) { return x + x; }
+
+/// Of the length of a vector, everywhere on the piece.
+Interval length_of(const Models& v) {
+    Interval by_part(0);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!v[axis].bounded()) return kUnknown;
+        by_part = by_part + square(v[axis].range());
+    }
+    const Interval squares = dot(v, v).range();
+    const double lo = std::max({0.0, by_part.lo, squares.lo}), hi = std::max(lo, squares.hi < by_part.hi ? squares.hi : by_part.hi);
+    return sqrt(Interval(lo, hi));
+}
+
+double degrees_up(double angle) { return std::min(180.0, (Interval(rounding::above(angle)) * (Interval(180) / rounding::pi)).hi); }
+double degrees_down(double angle) { return angle <= 0 ? 0 : std::max(0.0, (Interval(rounding::below(angle)) * (Interval(180) / rounding::pi)).lo); }
+
+/// Of the angle between two vectors: by their cross product over their dot product, which is sharp near 0 where the cosine is blind.
+Interval angle_of(const Models& p, const Models& q) {
+    const Models c = cross(p, q);
+    const TaylorModel d = dot(p, q);
+    const Interval y = length_of(c), x = d.range();
+    if (x.lo > 0) {
+        const Interval t = length_of({c.x / d, c.y / d, c.z / d});
+        if (t.hi < kInfinite) return {degrees_down(std::atan(t.lo)), degrees_up(std::atan(t.hi))};
+    }
+    if (!(y.hi < kInfinite) || !x.bounded() || (y.lo == 0 && x.lo <= 0 && x.hi >= 0)) return kUnknown;
+    const double most = x.lo < 0 ? std::atan2(y.lo, x.lo) : std::atan2(y.hi, x.lo), least = x.hi > 0 ? std::atan2(y.lo, x.hi) : std::atan2(y.hi, x.hi);
+    return {degrees_down(least), degrees_up(most)};
+}
+
+struct Normal {
+    Models t, c, w;  // along, across, t x c
+    explicit Normal(const EdgeSide::Jet& x) : t(part(x, 1)), c(part(x, 2)), w(EdgeSide::normal(x)) {}
+};
+
+/// Second fundamental form over first, in the direction x_c - (F/E) x_s: II(d,d) / I(d,d) = (L F^2 - 2 M E F + N E^2) / (E |w|^3), L, M, N with w
+/// for the unit normal.
+TaylorModel cross_curvature(const EdgeSide::Jet& x, const Normal& n) {
+    const TaylorModel E = dot(n.t, n.t), F = dot(n.t, n.c), ww = dot(n.w, n.w);
+    const TaylorModel L = twice(dot(part(x, 3), n.w)), M = dot(part(x, 4), n.w), N = twice(dot(part(x, 5), n.w));
+    return ((L * F - twice(M * E)) * F + N * (E * E)) / (E * ww * sqrt(ww));
+}
+
+class Bounder {
+public:
+    Bounder(const std::vector<EdgeSegment>& segments, const JumpLimits& limits) : segments_(segments), limits_(limits) {
+        bounds_.fill({0, kInfinite, segments.front().a.at(0.5), {}, kInfinite});
+        wanted_.fill(true);
+    }
+
+    std::array<JumpBound, kMeasures> run() {
+        for (std::size_t k = 0; k < segments_.size(); ++k) {
+            sample(k, 0), sample(k, 1);
+            add(k, 0.5, 0.5);
+        }
+        for (int m; (m = first_open()) < kMeasures; ++halved_[m]) {
+            const Piece p = pieces_[worst_[m]];
+            pieces_[worst_[m]] = pieces_.back(), pieces_.pop_back();
+            add(p.segment, p.middle - p.half / 2, p.half / 2);
+            add(p.segment, p.middle + p.half / 2, p.half / 2);
+        }
+        for (JumpBound& b : bounds_) b.upper = b.singular.empty() ? b.inside : kInfinite;
+        return bounds_;
+    }
+
+private:
+    struct Piece {
+        std::size_t segment;
+        double middle, half;
+        std::array<double, kMeasures> upper;
+    };
+
+    Sizes measure(std::size_t k, double middle, double half) const {
+        const EdgeSegment& e = segments_[k];
+        const EdgeSide::Jet x = e.a.jet(middle, half);
+        if (e.curve) {
+            Sizes s;
+            s[kC0] = length_of(part(x, e.derivative == 1 ? 2 : 0) - e.curve(middle, half));
+            return s;
+        }
+        const EdgeSide::Jet y = e.matched ? e.b.jet(e.matched(middle, half)) : e.b.jet(middle, half);
+        Sizes s;
+        const auto jump = [&](int n) { return part(x, n) - part(y, n); };
+        if (wanted_[kC0]) s[kC0] = length_of(jump(0));
+        if (wanted_[kC1]) s[kC1] = length_of(jump(2));
+        if (wanted_[kC2]) s[kC2] = length_of(jump(5)) * Interval(2);
+        if (wanted_[kG1]) s[kG1] = e.matched ? angle_of(e.a.normal(middle, half), EdgeSide::normal(y)) : angle_of(e.a.normal(middle, half), e.b.normal(middle, half));
+        if (wanted_[kG2]) {
+            const Normal p(x), q(y);
+            const Interval r = (cross_curvature(x, p) - cross_curvature(y, q)).range();
+            s[kG2] = r.bounded() ? abs(r) : kUnknown;
+        }
+        return s;
+    }
+
+    void sample(std::size_t k, double s) {
+        Sizes sizes = measure(k, s, 0);
+        if (wanted_[kC0] && segments_[k].distance) sizes[kC0].lo = std::min(sizes[kC0].lo, segments_[k].distance(s));
+        for (int m = 0; m < kMeasures; ++m)
+            if (wanted_[m] && sizes[m].lo > bounds_[m].lower) bounds_[m].lower = sizes[m].lo, bounds_[m].at = segments_[k].a.at(s);
+    }
+    void add(std::size_t k, double middle, double half) {
+        if (pieces_.size() < 256) sample(k, middle);  // by then the lower bounds are as good as they get
+        const Sizes sizes = measure(k, middle, half);
+        Piece p{k, middle, half, {}};
+        for (int m = 0; m < kMeasures; ++m) {
+            // What is not wanted any more is known for the piece's parent already; its bound has been settled.
+            p.upper[m] = wanted_[m] ? (sizes[m].hi <= std::numeric_limits<double>::max() ? sizes[m].hi : kInfinite) : 0;
+        }
+        pieces_.push_back(p);
+    }
+
+    /// Too short to be halved, and nothing known: the end of an edge at a pole or a singular corner.
+    bool at_tip(const Piece& p) const {
+        return p.half <= kTip / 2 && ((p.segment == 0 && p.middle - p.half <= 0) || (p.segment + 1 == segments_.size() && p.middle + p.half >= 1));
+    }
+
+    /// Sets the bound of a measure from its pieces, and says which of them is the worst.
+    void find_worst(int m) {
+        if (settled_[m]) return;
+        JumpBound& b = bounds_[m];
+        b.inside = -1, b.singular.clear();
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            const Piece& p = pieces_[i];
+            if (p.upper[m] == kInfinite && at_tip(p)) b.singular.push_back(segments_[p.segment].a.at(p.middle < 0.5 ? 0 : 1));
+            else if (p.upper[m] > b.inside) b.inside = p.upper[m], worst_[m] = i;
+        }
+        b.inside = std::max(b.inside, b.lower);
+        if (b.lower == 0) b.at = segments_[pieces_[worst_[m]].segment].a.at(pieces_[worst_[m]].middle);
+    }
+    /// The first measure that more pieces can make sharper.
+    int first_open() {
+        for (int m = 0; m < kMeasures; ++m) {
+            if (settled_[m]) continue;
+            find_worst(m);
+            const JumpBound& b = bounds_[m];
+            const bool enough = b.inside <= 0.01 * limits_.tolerance[m] || (b.inside < kInfinite && b.inside - b.lower <= limits_.relative * b.inside) || (b.inside <= limits_.tolerance[m] && halved_[m] > 64);
+            const double shortest = b.inside < kInfinite ? kShortest : kTip;
+            if (!enough && pieces_[worst_[m]].half > shortest / 2 && halved_[m] < limits_.max_halvings && !stalled(m)) return m;
+            settled_[m] = true, wanted_[m] = false;
+        }
+        return kMeasures;
+    }
+
+    /// Going on as since the last doubling of the pieces, would the budget end before anything is decided?
+    bool stalled(int m) {
+        if (halved_[m] < 128 || (halved_[m] & (halved_[m] - 1)) != 0) return false;
+        const JumpBound& b = bounds_[m];
+        const bool disproved = b.lower > limits_.tolerance[m];
+        const double excess = disproved ? b.inside - b.lower : b.inside, goal = disproved ? limits_.relative * b.inside : limits_.tolerance[m];
+        const double rate = excess / before_[m], at_end = excess * std::pow(rate, std::log2(double(limits_.max_halvings) / halved_[m]));
+        before_[m] = excess;
+        return !(rate < 0.67) || at_end > 2 * goal;
+    }
+
+    const std::vector<EdgeSegment>& segments_;
+    const JumpLimits& limits_;
+    std::vector<Piece> pieces_;
+    std::array<JumpBound, kMeasures> bounds_;
+    std::array<std::size_t, kMeasures> worst_{};
+    std::array<int, kMeasures> halved_{};
+    std::array<double, kMeasures> before_{kInfinite, kInfinite, kInfinite, kInfinite, kInfinite};
+    std::array<bool, kMeasures> wanted_{}, settled_{};
+};
+
+}  // namespace
+
+std::array<JumpBound, kMeasures> bound_jumps(const std::vector<EdgeSegment>& segments, const JumpLimits& limits) {
+    return Bounder(segments, limits).run();
+}
+
+}  // namespace isoparm

@@ -1,0 +1,218 @@
+#include "edge_side.h"
+
+#include <algorithm>
+
+namespace isoparm {
+namespace {
+
+using Jet2 = JetUV<TaylorModel, 2>;
+
+/// The cell of x between lines; on a line, the one that `side` points into.
+std::size_t cell_beside(const std::vector<double>& lines, double x, double side) {
+    std::size_t i = 0;
+    while (i + 2 < lines.size() && (lines[i + 1] < x || (lines[i + 1] == x && side > 0))) ++i;
+    return i;
+}
+
+Jet2 variable(const Interval& from, const Interval& step, double cross, const TaylorModel& s) {
+    Jet2 x;
+    x.c[0] = TaylorModel(from) + TaylorModel(step) * s;
+    x.c[1] = TaylorModel(step);
+    x.c[2] = TaylorModel(cross);
+    return x;
+}
+
+Jet2 evaluate(const Polynomial& p, const Jet2& x, const Jet2& y) {
+    Jet2 sum;
+    for (int i = p.degree_u(); i >= 0; --i) {
+        Jet2 row;
+        for (int j = p.degree_v(); j >= 0; --j) {
+            if (j < p.degree_v()) row = row * y;
+            row.c[0] = row.c[0] + TaylorModel(p.coefficient(i, j));
+        }
+        sum = i < p.degree_u() ? sum * x + row : row;
+    }
+    return sum;
+}
+
+Interval step_of(double from, double to) { return Interval(to) - Interval(from); }
+Interval power(const Interval& x, int n) {
+    Interval r(1);
+    for (int k = 0; k < n; ++k) r = r * x;
+    return r;
+}
+
+/// Coefficients of a^k b^l in f(a * along + b * across), k + l <= 3, from the Taylor coefficients of f in (u,v).
+class Directional {
+public:
+    Directional(const Interval (&along)[2], const double (&across)[2]) {
+        for (int k = 0; k <= 3; ++k)
+            for (int l = 0; k + l <= 3; ++l)
+                for (int i = 0; i <= k + l; ++i) {
+                    const int j = k + l - i;
+                    for (int m = std::max(0, k - j); m <= std::min(i, k); ++m)
+                        factor_[k][l][i] += Interval(binomial(i, m) * binomial(j, k - m)) * power(along[0], m) * power(across[0], i - m) * power(along[1], k - m) * power(across[1], j - k + m);
+                }
+    }
+    Interval operator()(const JetUV<Interval, 3>& f, int k, int l) const {
+        Interval sum(0);
+        for (int i = 0; i <= k + l; ++i)
+            if (const Interval& x = factor_[k][l][i]; x.lo != 0 || x.hi != 0) sum += x * f.coefficient(i, k + l - i);
+        return sum;
+    }
+
+private:
+    Interval factor_[4][4][4];  // of f_ij, j = k + l - i
+};
+
+/// f(c + D) = sum at[k] D^k, the highest coefficient anywhere in over[k]; of the orders that are bounded, the one with the least rest.
+TaylorModel expanded(const Interval* at, const Interval* over, int most, const TaylorModel& D) {
+    TaylorModel best(Interval::all()), sum, powers(1.0);
+    double least = HUGE_VAL;
+    for (int k = 0; k <= most; ++k) {
+        const Interval rest = (over[k] - Interval(at[k].bounded() ? mid(at[k]) : 0)) * powers.range();
+        const double size = rest.bounded() ? mag(rest) : HUGE_VAL;
+        if (size <= least && size < HUGE_VAL) {
+            least = size;
+            best = sum + TaylorModel(Interval(at[k].bounded() ? mid(at[k]) : 0)) * powers;
+            best.widen(rest);
+        }
+        if (!at[k].bounded()) break;
+        sum = sum + TaylorModel(at[k]) * powers;
+        powers = powers * D;
+    }
+    return best;
+}
+
+/// Is this vector 0 at d = end, as far as rounding lets one see, and not everywhere?
+bool vanishes(const Vec3<TaylorModel>& t, double end) {
+    double size = 0, value = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int k = 0; k <= t[axis].degree(); ++k) size = std::max(size, mag(t[axis].coefficient(k)));
+        const Interval at = t[axis].at(end);
+        if (!at.contains(0)) return false;
+        value = std::max(value, mag(at));
+    }
+    return value <= 1e-11 * size && size > 0;
+}
+/// t / (1 + d) or t / (1 - d), when t is 0 at d = end = -1 or 1.
+TaylorModel without_zero(const TaylorModel& t, double end) {
+    std::array<Interval, TaylorModel::order + 1> q;
+    const int n = t.degree();
+    if (n < 1) return 0.0;
+    q[std::size_t(n - 1)] = t.coefficient(n);
+    for (int k = n - 1; k >= 1; --k) q[std::size_t(k - 1)] = t.coefficient(k) + Interval(end) * q[std::size_t(k)];
+    const TaylorModel r = TaylorModel::polynomial(q.data(), n - 1);
+    return end < 0 ? r : -r;
+}
+
+}  // namespace
+
+ParameterLine edge_line(const Patch& patch, int edge, double t0, double t1) {
+    static constexpr Vec2 quad[] = {{0, 1}, {-1, 0}, {0, -1}, {1, 0}}, triangle[] = {{1, -0.5}, {-0.5, 1}, {-0.5, -0.5}};
+    return {patch.edge_point(edge, t0), patch.edge_point(edge, t1), patch.domain() == Domain::quad ? quad[edge] : triangle[edge]};
+}
+
+EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : patch_(std::move(patch)), line_(line) {
+    const auto u = patch_.lines_u(), v = patch_.lines_v();
+    const std::size_t i = cell_beside(u, 0.5 * line.from.x + 0.5 * line.to.x, side.x), j = cell_beside(v, 0.5 * line.from.y + 0.5 * line.to.y, side.y);
+    cell_ = {u[i], u[i + 1], v[j], v[j + 1]};
+    exact_ = patch_.exact_cell(i, j);
+    if (exact_.empty()) return;
+    whole_ = form_at(TaylorModel::linear(0.5, 0.5));
+    for (const Jet2& x : whole_)
+        for (const TaylorModel& c : x.c)
+            if (!c.exact()) {
+                whole_.clear();
+                return;
+            }
+    find_directions();
+}
+
+// Of a rational surface X/w the derivatives have the directions of X' w - X w', which are polynomials.
+void EdgeSide::find_directions() {
+    for (const int n : {1, 2}) {
+        Vec3<TaylorModel>& t = directions_[std::size_t(n - 1)];
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto& x = whole_[std::size_t(axis)].c;
+            t[axis] = whole_.size() == 3 ? x[n] : x[n] * whole_[3].c[0] - x[0] * whole_[3].c[n];
+            if (!t[axis].exact()) return;
+        }
+        for (const double end : {-1.0, 1.0})
+            while (vanishes(t, end))
+                for (int axis = 0; axis < 3; ++axis) t[axis] = without_zero(t[axis], end);
+    }
+    has_directions_ = true;
+}
+
+Vec3<TaylorModel> EdgeSide::normal(const Jet& x) {
+    return cross(Vec3<TaylorModel>{x.x.c[1], x.y.c[1], x.z.c[1]}, Vec3<TaylorModel>{x.x.c[2], x.y.c[2], x.z.c[2]});
+}
+Vec3<TaylorModel> EdgeSide::normal(double middle, double half) const {
+    if (!has_directions_) return normal(jet(middle, half));
+    auto t = directions_;
+    for (auto& v : t)
+        for (int axis = 0; axis < 3; ++axis) v[axis] = v[axis].restricted(2 * middle - 1, 2 * half);
+    return cross(t[0], t[1]);
+}
+
+EdgeSide::Jet EdgeSide::jet(double middle, double half) const {
+    if (whole_.empty()) return jet(TaylorModel::linear(middle, half));
+    auto form = whole_;
+    for (Jet2& x : form)
+        for (TaylorModel& c : x.c) c = c.restricted(2 * middle - 1, 2 * half);
+    return of_form(form);
+}
+
+EdgeSide::Jet EdgeSide::jet(const TaylorModel& s) const { return exact_.empty() ? enclosed(s) : of_form(form_at(s)); }
+
+EdgeSide::Jet EdgeSide::of_form(const std::vector<Jet2>& form) const {
+    if (form.size() == 3) return {form[0], form[1], form[2]};
+    return {form[0] / form[3], form[1] / form[3], form[2] / form[3]};
+}
+
+std::vector<Jet2> EdgeSide::form_at(const TaylorModel& s) const {
+    const Jet2 x = variable(Interval(line_.from.x) - Interval(mid(Interval(cell_.u0, cell_.u1))), step_of(line_.from.x, line_.to.x), line_.cross.x, s);
+    const Jet2 y = variable(Interval(line_.from.y) - Interval(mid(Interval(cell_.v0, cell_.v1))), step_of(line_.from.y, line_.to.y), line_.cross.y, s);
+    std::vector<Jet2> form;
+    for (const Polynomial& p : exact_) form.push_back(evaluate(p, x, y));
+    return form;
+}
+
+EdgeSide::Jet EdgeSide::enclosed(const TaylorModel& s) const {
+    const double centre = mid(s.coefficient(0));
+    const Interval reach = s.range();
+    const TaylorModel D = s - TaylorModel(centre);
+    const Interval along[] = {step_of(line_.from.x, line_.to.x), step_of(line_.from.y, line_.to.y)};
+    const double across[] = {line_.cross.x, line_.cross.y};
+    const auto place = [&](const Interval& t) {
+        // On the far side of the cell the patch would answer with the next one: the box reaches a little into this one.
+        const auto inside = [](Interval x, double low, double high) {
+            x = clip(x, {low, high});
+            return x.lo == high ? Interval(std::nextafter(high, low), high) : x;
+        };
+        return Box{inside(Interval(line_.from.x) + along[0] * t, cell_.u0, cell_.u1), inside(Interval(line_.from.y) + along[1] * t, cell_.v0, cell_.v1)};
+    };
+    const auto at = patch_.enclose(place(Interval(centre))).over, over = patch_.enclose(place(reach)).over;
+    const Directional directional(along, across);
+    Jet r;
+    for (int axis = 0; axis < 3; ++axis) {
+        Interval a_all[4][4], b_all[4][4];
+        for (int k = 0; k <= 3; ++k)
+            for (int l = 0; l <= 2 && k + l <= 3; ++l) a_all[k][l] = directional(at[axis], k, l), b_all[k][l] = directional(over[axis], k, l);
+        for (int n = 0; n < Jet2::size; ++n) {
+            const auto [k, l] = Jet2::powers[std::size_t(n)];
+            Interval a[4], b[4];
+            const int most = 3 - k - l;
+            for (int m = 0; m <= most; ++m) {
+                const Interval times(binomial(k + m, k));
+                a[m] = times * a_all[k + m][l];
+                b[m] = times * b_all[k + m][l];
+            }
+            r[axis].c[n] = expanded(a, b, most, D);
+        }
+    }
+    return r;
+}
+
+}  // namespace isoparm

@@ -1,0 +1,57 @@
+// edge_side.h -- what a patch does along a line of its domain, as Taylor models: position and derivatives to second order.
+//
+// The line runs straight from `from` to `to`, s in [0,1]; its image is an edge of the patch, or a line between two of its cells. The jet
+// has s as its first variable and, as its second, the parameter across: x(p(s) + e cross). Exact up to rounding where the patch is
+// polynomial or rational (Patch::exact_cell); elsewhere by enclosures to third order, whose rest shrinks with the length of the piece to the
+// fourth power for positions, to the third for first derivatives and to the second for second ones.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "patch.h"
+#include "scalar/taylor_model.h"
+
+namespace isoparm {
+
+struct ParameterLine {
+    Vec2 from, to, cross;
+};
+
+/// Edge `edge` from t0 to t1. The direction across points into the patch: on a rectangle along the other parameter, one unit of it in one; on
+/// the triangle the median, from the middle of the edge to the opposite vertex (formulas of C1 data: D_k).
+ParameterLine edge_line(const Patch& patch, int edge, double t0, double t1);
+
+class EdgeSide {
+public:
+    using Jet = Vec3<JetUV<TaylorModel, 2>>;
+
+    /// The line lies in one closed cell between breaks; of two, the one that `side` (cross or -cross) points into. Derivatives across are
+    /// along line.cross.
+    EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side);
+
+    Vec2 at(double s) const { return {line_.from.x + s * (line_.to.x - line_.from.x), line_.from.y + s * (line_.to.y - line_.from.y)}; }
+    /// Over s in [middle - half, middle + half]; at one point when half is 0.
+    Jet jet(double middle, double half) const;
+    /// Of the direction of S_s x S_cross, of any length, over the same. Where the edge ends in a pole, and S_cross (or S_s) goes to 0 there
+    /// (as far as rounding lets one see; it is taken for an exact 0), that factor is divided out: the direction has its limit at the end.
+    Vec3<TaylorModel> normal(double middle, double half) const;
+    static Vec3<TaylorModel> normal(const Jet& x);
+    /// At s = s(d): another run along the same line. Derivatives are still by s.
+    Jet jet(const TaylorModel& s) const;
+
+private:
+    Jet of_form(const std::vector<JetUV<TaylorModel, 2>>& form) const;
+    std::vector<JetUV<TaylorModel, 2>> form_at(const TaylorModel& s) const;
+    Jet enclosed(const TaylorModel& s) const;
+    void find_directions();
+
+    Patch patch_;
+    ParameterLine line_;
+    Rect cell_;
+    std::vector<Polynomial> exact_;
+    std::vector<JetUV<TaylorModel, 2>> whole_;  // over all of s in [0,1], where that is exact
+    std::array<Vec3<TaylorModel>, 2> directions_;  // then of S_s and S_cross, without the zeros at the ends
+    bool has_directions_ = false;
+};
+
+}  // namespace isoparm

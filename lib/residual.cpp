@@ -1,0 +1,67 @@
+#include <algorithm>
+
+#include "promises.h"
+
+namespace isoparm {
+namespace {
+
+using Models = Vec3<TaylorModel>;
+
+/// A curve over [from, to], `exact` its polynomials there if it has them, as a model over [middle - half, middle + half] of s in [0,1].
+Models model_of(const Curve& curve, const Vec3<Polynomial>& exact, double from, double to, double middle, double half) {
+    const Interval step = Interval(to) - Interval(from), m = Interval(from) + step * Interval(middle), h = step * Interval(half);
+    Models r;
+    if (exact.x.exists() && exact.y.exists() && exact.z.exists()) {
+        const TaylorModel t = TaylorModel::linear(m - Interval(mid(Interval(from, to))), h);
+        for (int axis = 0; axis < 3; ++axis)
+            for (int k = exact[axis].degree_u(); k >= 0; --k) r[axis] = r[axis] * t + TaylorModel(exact[axis].coefficient(k, 0));
+        return r;
+    }
+    const Interval reach(std::max(curve.begin(), (m - h).lo), std::min(curve.end(), (m + h).hi));
+    Vec3<Interval> at[4], over[4];
+    const Interval centre = clip(m, {curve.begin(), curve.end()});
+    curve.taylor(centre, 3, at);
+    curve.taylor(reach, 3, over);
+    const TaylorModel t = TaylorModel::linear(0, h);
+    for (int axis = 0; axis < 3; ++axis) {
+        // Of the orders that have a bound over the whole of it, the highest.
+        int top = 3;
+        while (top > 0 && !(over[top][axis].bounded() && at[top - 1][axis].bounded())) --top;
+        r[axis] = TaylorModel(over[top][axis]);
+        for (int k = top - 1; k >= 0; --k) r[axis] = r[axis] * t + TaylorModel(at[k][axis]);
+    }
+    return r;
+}
+
+}  // namespace
+
+JumpBound bound_residual(const Patch& patch, const Promise& promise, double tolerance) {
+    const Vec2 from = promise.line.from, to = promise.line.to, cross = promise.line.cross;
+    const Curve& curve = promise.curve;
+    // Cut where the line leaves a cell of the patch, and at the breaks of the curve.
+    std::vector<std::pair<double, double>> cuts{{0, curve.begin()}, {1, curve.end()}};
+    const double length = curve.end() - curve.begin();
+    for (const Break& b : curve.breaks()) cuts.push_back({(b.t - curve.begin()) / length, b.t});
+    const bool along_u = from.y == to.y;
+    if (patch.domain() == Domain::quad)
+        for (const double t : along_u ? patch.breaks_u() : patch.breaks_v()) {
+            const double start = along_u ? from.x : from.y, s = (t - start) / ((along_u ? to.x : to.y) - start);
+            if (std::none_of(cuts.begin(), cuts.end(), [&](const auto& c) { return std::fabs(c.first - s) < 1e-12; })) cuts.push_back({s, curve.begin() + s * length});
+        }
+    std::sort(cuts.begin(), cuts.end());
+    std::vector<EdgeSegment> segments;
+    for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+        const auto [s0, t0] = cuts[k];
+        const auto [s1, t1] = cuts[k + 1];
+        const auto place = [&](double s) { return s == 0 ? from : s == 1 ? to : Vec2{from.x + s * (to.x - from.x), from.y + s * (to.y - from.y)}; };
+        const EdgeSide side(patch, {place(s0), place(s1), cross}, cross);
+        EdgeSegment e{side, side, {}, {}, {}, promise.derivative};
+        e.curve = [curve, exact = curve(Polynomial::variable_u(Interval(t0, t1))), a = t0, b = t1](double middle, double half) { return model_of(curve, exact, a, b, middle, half); };
+        segments.push_back(std::move(e));
+    }
+    JumpLimits limits;
+    limits.tolerance.fill(tolerance);
+    return bound_jumps(segments, limits)[kC0];
+}
+
+}  // namespace isoparm
