@@ -1,7 +1,5 @@
 #include "image.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -10,7 +8,7 @@
 #include <filesystem>
 
 #include "error.h"
-#include "image_module.h"
+#include "image_loader.h"
 #include "io/atomic_file.h"
 #include "palette.h"
 
@@ -47,49 +45,6 @@ const Format& format_of(const std::string& path) {
     throw Error(ErrorKind::usage, path + ": found " +
                                       (extension.empty() ? "no extension" : "the extension \"" + extension + "\"") +
                                       ", expected the extension of an image format: " + known);
-}
-
-// ---- the module ---------------------------------------------------------------------------------------------------
-struct Module {
-    decltype(&isoparm_image_write) write;
-    decltype(&isoparm_image_read) read;
-};
-
-fs::path program_folder() {
-    std::error_code failed;
-    fs::path program = fs::read_symlink("/proc/self/exe", failed);
-    Dl_info info{};
-    if (failed && dladdr(reinterpret_cast<void*>(&program_folder), &info) && info.dli_fname)
-        program = fs::absolute(info.dli_fname, failed);
-    return program.parent_path();
-}
-
-Module load_module() {
-    const fs::path beside = program_folder();
-    std::string tried;
-    for (const fs::path& folder : {beside, beside.parent_path() / "lib" / "isoparm"})
-        for (const char* name : {"isoparm_image.so", "libisoparm_image.so"}) {
-            const fs::path file = folder / name;
-            std::error_code ignored;
-            if (!fs::exists(file, ignored)) continue;
-            void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-            if (!library)
-                throw Error(ErrorKind::io, file.string() + ": the image module cannot be loaded: " + dlerror());
-            const Module m{reinterpret_cast<decltype(&isoparm_image_write)>(dlsym(library, "isoparm_image_write")),
-                           reinterpret_cast<decltype(&isoparm_image_read)>(dlsym(library, "isoparm_image_read"))};
-            if (!m.write || !m.read)
-                throw Error(ErrorKind::io,
-                            file.string() + ": found another program's library, expected the image module");
-            return m;
-        }
-    throw Error(ErrorKind::io, "the image module isoparm_image.so was found neither in " + beside.string() +
-                                   " nor in " + (beside.parent_path() / "lib" / "isoparm").string() +
-                                   "; build or install isoparm again");
-}
-
-const Module& module() {
-    static const Module loaded = load_module();
-    return loaded;
 }
 
 // ---- bytes --------------------------------------------------------------------------------------------------------
@@ -144,7 +99,7 @@ void write_file(const std::string& path, const std::string& file, const Format& 
         values.push_back(value.c_str());
     }
     IsoparmImageError error{};
-    if (module().write(file.c_str(), &pixels, format.lossy, names.data(), values.data(), static_cast<int>(names.size()),
+    if (image_module().write(file.c_str(), &pixels, format.lossy, names.data(), values.data(), static_cast<int>(names.size()),
                        &error) != 0) {
         std::string told = error.text;  // about the temporary, which is not the user's business
         if (const auto at = told.find(file); at != std::string::npos)
@@ -191,7 +146,7 @@ Image read_image(const std::string& path) {
     IsoparmImageError error{};
     std::error_code ignored;
     if (!fs::exists(path, ignored)) throw Error(ErrorKind::io, path + ": there is no such file");
-    if (module().read(path.c_str(), &take_pixels, &image, &error) != 0)
+    if (image_module().read(path.c_str(), &take_pixels, &image, &error) != 0)
         throw Error(ErrorKind::io, path + ": cannot be read as an image: " + error.text);
     return image;
 }

@@ -23,8 +23,9 @@ const Command* const kCommands[] = {
     &figures_command,     // all pictures
     &limit_command,       // against OpenSubdiv
     &study_command,       // how well methods tessellate
+    &diff_command,        // one image against another
 };
-const std::vector<std::string> kNotBuiltYet = {"check", "diff"};
+const std::vector<std::string> kNotBuiltYet = {"check"};
 
 std::string help() {
     std::string text = "usage: isoparm COMMAND ...\n\nFrom boundary curves to surfaces, to meshes of proved error, to ray-traced pictures.\n\n";
@@ -34,7 +35,7 @@ std::string help() {
         text += "  " + name + c->summary + "\n";
     }
     return text + R"(
-isoparm COMMAND --help tells more; --version prints the version. Not built yet: check, diff.
+isoparm COMMAND --help tells more; --version prints the version. Not built yet: check.
 Every command knows --quiet and --threads N (or ISOPARM_THREADS). Results go to stdout, messages to stderr.
 
 Exit codes: 0 success, 1 success with a warning, 2 something could not be proved or failed a check, 3 not comparable,
