@@ -177,7 +177,6 @@ ImageDecoder::ImageDecoder(const std::string& path, const ImageLimits& limits) :
     ::close(ends[1]);
     child_->socket = ends[0];
     if (child_->id < 0) fail(std::string("no process to read it: ") + std::strerror(errno));
-    describe();
 }
 
 ImageDecoder::~ImageDecoder() = default;
@@ -224,7 +223,7 @@ void ImageDecoder::wait() {
 }
 
 /// What the child says is checked like the file itself: the file may have taken it over.
-void ImageDecoder::describe() {
+void ImageDecoder::open() {
     wait();
     std::uint64_t pixels = 0;
     for (;;) {

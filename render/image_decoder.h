@@ -35,12 +35,14 @@ struct ImagePart {
 
 class ImageDecoder {
 public:
-    /// Starts the child and reads the description. Throws Error(io). Not to be used from two threads.
+    /// Checks the header and starts the child. Throws Error(io). Not to be used from two threads.
     ImageDecoder(const std::string& path, const ImageLimits& limits);
     ~ImageDecoder();
     ImageDecoder(const ImageDecoder&) = delete;
     ImageDecoder& operator=(const ImageDecoder&) = delete;
 
+    /// Waits for what the decoder finds in the file; to be called once, before anything below. Throws Error(io).
+    void open();
     const std::string& path() const { return path_; }
     const std::vector<ImagePart>& parts() const { return parts_; }
     /// As many rows as one block can have of that part.
@@ -58,7 +60,6 @@ private:
     [[noreturn]] void child_is_gone();
     std::string receive_text();
     void receive(void* to, std::size_t size);
-    void describe();
     std::string path_;
     ImageLimits limits_;
     std::unique_ptr<Child> child_;

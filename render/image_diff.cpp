@@ -82,6 +82,7 @@ DiffMask read_mask(const DiffRequest& request, const ImageWindow& window) {
     DiffMask mask;
     if (request.mask.empty()) return mask;
     ImageDecoder file(request.mask, request.image);
+    file.open();
     const ImagePart& p = file.parts().front();
     if (p.data.width != window.width || p.data.height != window.height)
         throw Error(ErrorKind::usage, "--mask: found " + std::to_string(p.data.width) + " x " + std::to_string(p.data.height) + " pixels in " + request.mask + ", expected " + std::to_string(window.width) + " x " + std::to_string(window.height) + ", as the images have");
@@ -267,7 +268,8 @@ void compare(Pair& p, const DiffRequest& request, ImageDiff& result, DifferenceI
 ImageDiff diff_images(const std::string& a, const std::string& b, const DiffRequest& request) {
     ImageDiff result;
     result.a = a, result.b = b;
-    Pair p{{a, request.image}, {b, request.image}, {}};
+    Pair p{{a, request.image}, {b, request.image}, {}};  // both start at once
+    p.a.open(), p.b.open();
     result.reasons = match_parts(p);
     if (!result.reasons.empty()) {
         result.verdict = DiffVerdict::not_comparable;

@@ -49,7 +49,7 @@ ImageModule load_module() {
             const fs::path file = folder / name;
             std::error_code ignored;
             if (!fs::exists(file, ignored)) continue;
-            void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+            void* library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
             if (!library)
                 throw Error(ErrorKind::io, file.string() + ": the image module cannot be loaded: " + dlerror());
             return functions(library, file);

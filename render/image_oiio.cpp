@@ -346,4 +346,5 @@ int isoparm_image_finish(IsoparmImageWriter* file, IsoparmImageError* error) {
 void isoparm_image_threads(int threads) {
     OIIO::attribute("threads", threads);
     OIIO::attribute("exr_threads", threads == 1 ? -1 : threads);
+    (void)OIIO::ImageInput::create("openexr");  // lists its formats now, once, and not in every child
 }
