@@ -42,7 +42,8 @@ struct ChannelDiff {
     std::uint64_t allowed_nonfinite = 0;                                   // the same in both, and allowed
     double sum = 0, squares = 0, max = 0, peak = 1;                        // of finite differences; the largest value in either image, or 1
     DiffSample worst;                                                      // the first that is not finite, or the largest
-    std::vector<std::uint64_t> histogram;                                  // of differences as floats: the upper 15 of their 31 bits
+    /// Samples by the upper 15 of the 31 bits of their difference as a float (0: none, or below 1e-38), in order; those that there are.
+    std::vector<std::pair<std::uint32_t, std::uint64_t>> histogram;
 
     double mean() const { return samples ? sum / static_cast<double>(samples) : 0; }
     double rms() const;
@@ -100,10 +101,15 @@ private:
     bool same_order_ = true;
     int patch_ = -1, u_ = -1, v_ = -1;  // places in a, where there are such channels
     std::map<std::pair<std::size_t, std::int64_t>, PatchFailures> groups_;
+    std::vector<std::vector<std::uint64_t>> bins_;  // histograms, by channel
 };
 
+/// The end of the differences in a bin of a histogram.
+double histogram_end(std::uint32_t bin);
+
+/// From the best to the worst; `missing`: one of two images is not there, which fails.
+enum class DiffVerdict { pass, warn, missing, fail, not_comparable, unreadable };
 /// What the limits say of all parts together, the flip, rms and ssim limits left out.
-enum class DiffVerdict { pass, warn, fail, not_comparable, unreadable };
 DiffVerdict judge(const std::vector<PartDiff>& parts, const DiffLimits& limits);
 
 }  // namespace isoparm

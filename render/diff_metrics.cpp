@@ -13,8 +13,6 @@ constexpr std::size_t kBins = std::size_t{1} << 15;
 constexpr std::size_t kMostGroups = 10000;
 
 std::size_t bin_of(double difference) { return std::bit_cast<std::uint32_t>(static_cast<float>(difference)) >> 16; }
-/// Of the numbers in a bin.
-double upper_end(std::size_t bin) { return std::bit_cast<float>((static_cast<std::uint32_t>(bin) << 16) | 0xffffu); }
 
 bool matches(const std::string& pattern, const std::string& name) {
     if (!pattern.empty() && pattern.back() == '*') return name.compare(0, pattern.size() - 1, pattern, 0, pattern.size() - 1) == 0;
@@ -41,15 +39,17 @@ bool same_nonfinite(double a, double b) { return (std::isnan(a) && std::isnan(b)
 
 }  // namespace
 
+double histogram_end(std::uint32_t bin) { return bin == 0 ? 0 : std::bit_cast<float>((bin << 16) | 0xffffu); }
+
 double ChannelDiff::rms() const { return samples ? std::sqrt(squares / static_cast<double>(samples)) : 0; }
 double ChannelDiff::psnr() const { return squares > 0 ? 20 * std::log10(peak / rms()) : std::numeric_limits<double>::infinity(); }
 
 double ChannelDiff::percentile(double part) const {
     const double most = std::ceil(std::clamp(part, 0.0, 1.0) * static_cast<double>(samples));
     std::uint64_t below = 0;
-    for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
-        below += histogram[bin];
-        if (below > 0 && static_cast<double>(below) >= most) return bin == 0 ? 0 : std::min(upper_end(bin), max);
+    for (const auto& [bin, count] : histogram) {
+        below += count;
+        if (static_cast<double>(below) >= most) return std::min(histogram_end(bin), max);
     }
     return max;
 }
@@ -83,10 +83,10 @@ DiffMeter::DiffMeter(const ImagePart& a, const ImagePart& b, const DiffLimits& l
         d.fail = limits.fail.value, d.warn = limits.warn.value;
         for (const auto& [pattern, value] : limits.channels)
             if (matches(pattern, d.name)) d.fail = d.warn = value;
-        d.histogram.assign(kBins, 0);
         same_order_ = same_order_ && d.in_b == c;
         diff_.channels.push_back(std::move(d));
     }
+    bins_.assign(diff_.channels.size(), std::vector<std::uint64_t>(kBins));
     patch_ = place_of(a.channels, "patch.I"), u_ = place_of(a.channels, "uv.U"), v_ = place_of(a.channels, "uv.V");
     if (u_ < 0 || v_ < 0) u_ = v_ = -1;
 }
@@ -122,7 +122,7 @@ bool DiffMeter::add_equal_row(const T* a, const T* b) {
         for (std::size_t i = static_cast<std::size_t>(c); i < n; i += static_cast<std::size_t>(channels_)) peak = a[i] > peak ? a[i] : peak;
         d.peak = std::max(d.peak, static_cast<double>(peak));
         d.samples += static_cast<std::uint64_t>(diff_.window.width);
-        d.histogram[0] += static_cast<std::uint64_t>(diff_.window.width);
+        bins_[static_cast<std::size_t>(c)][0] += static_cast<std::uint64_t>(diff_.window.width);
     }
     diff_.pixels += static_cast<std::uint64_t>(diff_.window.width);
     return true;
@@ -138,16 +138,16 @@ void DiffMeter::add_pixel(const T* a, const T* b, int x) {
         double difference = std::fabs(q - p);
         if (!std::isfinite(p) || !std::isfinite(q)) {
             if (limits_.allow_nonfinite && same_nonfinite(p, q)) {
-                ++d.histogram[0], ++d.allowed_nonfinite;
+                ++bins_[c][0], ++d.allowed_nonfinite;
                 continue;
             }
             if (d.nonfinite++ == 0) d.worst = {diff_.window.x + x, diff_.window.y + y_, p, q};
             difference = std::numeric_limits<double>::infinity();
             odd = true;
-            ++d.histogram[kBins - 1];
+            ++bins_[c][kBins - 1];
         } else {
             d.peak = std::max({d.peak, p, q});
-            ++d.histogram[bin_of(difference)];
+            ++bins_[c][bin_of(difference)];
             if (difference == 0) continue;
             d.sum += difference, d.squares += difference * difference;
             if (difference > d.max) {
@@ -183,6 +183,9 @@ void DiffMeter::add(const double* a, const double* b, int rows) { add_rows(a, b,
 
 PartDiff DiffMeter::result() const {
     PartDiff all = diff_;
+    for (std::size_t c = 0; c < bins_.size(); ++c)
+        for (std::uint32_t bin = 0; bin < kBins; ++bin)
+            if (bins_[c][bin] > 0) all.channels[c].histogram.emplace_back(bin, bins_[c][bin]);
     for (const auto& [key, group] : groups_) all.patches.push_back(group);
     std::stable_sort(all.patches.begin(), all.patches.end(), [](const PatchFailures& p, const PatchFailures& q) { return p.channel != q.channel ? p.channel < q.channel : p.pixels > q.pixels; });
     return all;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ostream>
 
+#include "html_text.h"
 #include "json_text.h"
 
 namespace isoparm {
@@ -85,6 +86,7 @@ const char* verdict_name(DiffVerdict verdict) {
     switch (verdict) {
         case DiffVerdict::pass: return "pass";
         case DiffVerdict::warn: return "warn";
+        case DiffVerdict::missing:
         case DiffVerdict::fail: return "fail";
         case DiffVerdict::not_comparable: return "not_comparable";
         default: return "error";
@@ -101,7 +103,8 @@ std::string verdict_line(const ImageDiff& d, const DiffLimits& limits) {
     std::string why;
     for (const std::string& r : d.reasons) why += (why.empty() ? "" : "; ") + r;
     if (d.verdict == DiffVerdict::not_comparable) return "NOT COMPARABLE: " + why;
-    if (!d.compared()) return "ERROR: " + why;
+    if (d.verdict == DiffVerdict::unreadable) return "ERROR: " + why;
+    if (d.verdict == DiffVerdict::missing) return "FAIL: " + why;
     if (d.nonfinite > 0) why = std::to_string(d.nonfinite) + " of " + std::to_string(d.pixels) + " pixels hold NaN or Inf" + (why.empty() ? "" : "; " + why);
     if (d.failing > d.nonfinite) why += (why.empty() ? "" : "; ") + std::to_string(d.failing) + " of " + std::to_string(d.pixels) + " pixels (" + percent(d.failing, d.pixels) + ") differ by more than " + (limits.channels.empty() ? brief(limits.fail.value) : "their channels' limits");
     if (d.verdict == DiffVerdict::fail && why.empty()) why = "the largest difference, " + brief(d.max) + ", is more than " + brief(limits.fail.hard);
@@ -144,24 +147,18 @@ std::string diff_json(const std::vector<ImageDiff>& all) {
 }
 
 std::string diff_junit(const std::vector<ImageDiff>& all, const DiffLimits& limits) {
-    const auto escaped = [](const std::string& text) {
-        std::string r;
-        for (const char c : text) {
-            if (c == '<') r += "&lt;";
-            else if (c == '>') r += "&gt;";
-            else if (c == '&') r += "&amp;";
-            else if (c == '"') r += "&quot;";
-            else r += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? '?' : c;  // XML has no other control characters
-        }
-        return r;
+    const auto printable = [](std::string text) {  // XML has no other control characters
+        for (char& c : text)
+            if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') c = '?';
+        return escaped(text);
     };
     std::size_t failures = 0, errors = 0;
     std::string cases;
     for (const ImageDiff& d : all) {
-        const bool error = !d.compared(), failure = d.verdict == DiffVerdict::fail;
+        const bool error = d.verdict > DiffVerdict::fail, failure = d.verdict == DiffVerdict::fail || d.verdict == DiffVerdict::missing;
         failures += failure, errors += error;
-        cases += "  <testcase classname=\"isoparm.diff\" name=\"" + escaped(d.b) + "\">\n";
-        const std::string line = escaped(verdict_line(d, limits));
+        cases += "  <testcase classname=\"isoparm.diff\" name=\"" + printable(d.b) + "\">\n";
+        const std::string line = printable(verdict_line(d, limits));
         if (error || failure) cases += std::string("    <") + (error ? "error" : "failure") + " type=\"" + verdict_name(d.verdict) + "\" message=\"" + line + "\"/>\n";
         else if (d.verdict == DiffVerdict::warn) cases += "    <system-out>" + line + "</system-out>\n";
         cases += "  </testcase>\n";

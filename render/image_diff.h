@@ -49,7 +49,7 @@ struct ImageDiff {
     std::optional<double> flip, ssim;
     FlipOptions flip_options;          // as used
     std::optional<DiffPreview> preview;
-    bool compared() const { return verdict != DiffVerdict::not_comparable && verdict != DiffVerdict::unreadable; }
+    bool compared() const { return !parts.empty(); }
 };
 
 /// Throws Error(io) for a file that cannot be read or written, Error(usage) for a channel limit that fits no channel.
