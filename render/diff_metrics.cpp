@@ -35,6 +35,22 @@ std::string text_of(const ImageWindow& w) {
     return std::to_string(w.width) + " x " + std::to_string(w.height) + " at (" + std::to_string(w.x) + "," + std::to_string(w.y) + ")";
 }
 
+/// Whether all are finite, and then the largest of them or 0; without waiting for one number before the next.
+template <class T>
+std::pair<bool, T> survey(const T* a, std::size_t n) {
+    constexpr std::size_t lanes = 16;
+    T most[lanes] = {}, test[lanes] = {};
+    std::size_t i = 0;
+    for (; i + lanes <= n; i += lanes)
+        for (std::size_t k = 0; k < lanes; ++k) {
+            most[k] = a[i + k] > most[k] ? a[i + k] : most[k];
+            test[k] += a[i + k] * T(0);  // becomes NaN when one is not finite
+        }
+    for (; i < n; ++i) most[0] = a[i] > most[0] ? a[i] : most[0], test[0] += a[i] * T(0);
+    for (std::size_t k = 1; k < lanes; ++k) most[0] = std::max(most[0], most[k]), test[0] += test[k];
+    return {test[0] == 0, most[0]};
+}
+
 bool same_nonfinite(double a, double b) { return (std::isnan(a) && std::isnan(b)) || a == b; }
 
 }  // namespace
@@ -113,14 +129,12 @@ bool DiffMeter::add_equal_row(const T* a, const T* b) {
     if (!mask_.empty() || !same_order_) return false;
     const std::size_t n = static_cast<std::size_t>(diff_.window.width) * static_cast<std::size_t>(channels_);
     if (std::memcmp(a, b, n * sizeof(T)) != 0) return false;
-    T test = 0;
-    for (std::size_t i = 0; i < n; ++i) test += a[i] * T(0);  // NaN when one is not finite
-    if (!(test == 0)) return false;
+    const auto [finite, largest] = survey(a, n);
+    if (!finite) return false;
     for (int c = 0; c < channels_; ++c) {
         ChannelDiff& d = diff_.channels[static_cast<std::size_t>(c)];
-        T peak = 0;
-        for (std::size_t i = static_cast<std::size_t>(c); i < n; i += static_cast<std::size_t>(channels_)) peak = a[i] > peak ? a[i] : peak;
-        d.peak = std::max(d.peak, static_cast<double>(peak));
+        if (static_cast<double>(largest) > d.peak)
+            for (std::size_t i = static_cast<std::size_t>(c); i < n; i += static_cast<std::size_t>(channels_)) d.peak = std::max(d.peak, static_cast<double>(a[i]));
         d.samples += static_cast<std::uint64_t>(diff_.window.width);
         bins_[static_cast<std::size_t>(c)][0] += static_cast<std::uint64_t>(diff_.window.width);
     }

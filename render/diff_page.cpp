@@ -183,6 +183,11 @@ std::string stage(const DiffPreview& p, const ImageDiff& d) {
 
 }  // namespace
 
+void make_figures(ImageDiff& d) {
+    if (d.preview) d.figures = stage(*d.preview, d);
+    d.preview.reset();
+}
+
 std::string diff_page(const std::vector<ImageDiff>& all, const DiffLimits& limits) {
     std::size_t good = 0;
     for (const ImageDiff& d : all) good += d.verdict == DiffVerdict::pass;
@@ -194,7 +199,7 @@ std::string diff_page(const std::vector<ImageDiff>& all, const DiffLimits& limit
     for (std::size_t k = 0; k < all.size(); ++k) {
         const ImageDiff& d = all[k];
         text += "<section data-pair=\"" + std::to_string(k + 1) + "\">\n<h2>" + escaped(d.b) + " <span class=\"soft\">against " + escaped(d.a) + "</span></h2>\n<p class=\"" + verdict_name(d.verdict) + "\">" + escaped(verdict_line(d, limits)) + "</p>\n";
-        if (d.preview) text += stage(*d.preview, d);
+        text += d.figures;
         if (d.compared()) {
             text += "<p>max " + brief(d.max) + ", mean " + brief(d.mean) + ", RMS " + brief(d.rms) + ", PSNR " + brief(d.psnr) + (d.flip ? ", FLIP " + brief(*d.flip) : "") + (d.ssim ? ", SSIM " + brief(*d.ssim) : "") + "</p>\n" + histogram(d.parts) + table(d);
         }

@@ -23,7 +23,9 @@ std::string diff_json(const ImageDiff& diff);
 std::string diff_json(const std::vector<ImageDiff>& all);
 /// One test case for each pair.
 std::string diff_junit(const std::vector<ImageDiff>& all, const DiffLimits& limits);
-/// A page that needs no other file: side by side, flicker, wipe, heat map, histogram. Pairs without a preview have numbers only.
+/// The preview as figures of the page, which take less memory; there is no preview afterwards. Throws Error(io).
+void make_figures(ImageDiff& diff);
+/// A page that needs no other file: side by side, flicker, wipe, heat map, histogram. Pairs without figures have numbers only.
 std::string diff_page(const std::vector<ImageDiff>& all, const DiffLimits& limits);
 
 }  // namespace isoparm

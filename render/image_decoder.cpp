@@ -1,6 +1,7 @@
 #include "image_decoder.h"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -15,6 +16,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <thread>
 
 #include "error.h"
 #include "image_header.h"
@@ -74,6 +76,15 @@ void give_up_rights(const ImageLimits& limits) {
     if (const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC); nowhere >= 0) ::dup2(nowhere, 1), ::dup2(nowhere, 2);  // decoders talk
 }
 
+/// Stacks and arenas of threads take addresses too: many processors must not use up the limit on memory.
+int decoder_threads(const ImageLimits& limits) {
+#ifdef M_ARENA_MAX
+    ::mallopt(M_ARENA_MAX, 2);
+#endif
+    const int here = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1u));
+    return std::min(limits.threads > 0 ? limits.threads : here, 8);
+}
+
 struct Request {
     std::int32_t part, first, rows, doubles, slot;
 };
@@ -93,7 +104,7 @@ void answer(int socket, int failed, const IsoparmImageError& error) {
 [[noreturn]] void decode(const std::string& path, const std::string& format, const ImageLimits& limits, int socket, char* slots) {
     give_up_rights(limits);
     const ImageModule& module = image_module();  // loaded before
-    module.threads(limits.threads);
+    module.threads(decoder_threads(limits));
     IsoparmImageError error{};
     IsoparmImageFile* file = module.open(path.c_str(), format.c_str(), &error);
     answer(socket, !file, error);

@@ -15,7 +15,7 @@ struct ImageLimits {
     std::uint64_t pixels = std::uint64_t{1} << 29;  // of all parts of a file
     std::size_t memory = std::size_t{768} << 20;    // bytes that decoding may take beyond what the program has
     int seconds = 120;                              // of processor time for a file, and of waiting for a block of rows
-    int threads = 0;                                // of the decoder; 0: as many as there are
+    int threads = 0;                                // of the decoder, at most 8; 0: as many as there are processors
 };
 
 struct ImageWindow {

@@ -49,6 +49,7 @@ struct ImageDiff {
     std::optional<double> flip, ssim;
     FlipOptions flip_options;          // as used
     std::optional<DiffPreview> preview;
+    std::string figures;               // of a page, made of the preview (diff_report.h)
     bool compared() const { return !parts.empty(); }
 };
 

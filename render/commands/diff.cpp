@@ -209,6 +209,7 @@ std::vector<ImageDiff> compare_folders(const std::string& references, const std:
         ImageDiff& d = all.back();
         if (d.verdict == DiffVerdict::pass) d.preview.reset();
         pictures += d.preview.has_value();
+        make_figures(d);
         tell(d, request, options);
         if (options.has("--update")) update(d, (fs::path(references) / pair.name).string(), pair.image, request, options);
     }
@@ -286,6 +287,7 @@ int run(const std::vector<std::string>& arguments) {
     if (folders) all = compare_folders(a, b, request, options);
     else {
         all.push_back(compare_files(a, b, request));
+        make_figures(all.front());
         tell(all.front(), request, options);
         if (options.has("--update")) update(all.front(), a, b, request, options);
     }
