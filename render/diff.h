@@ -72,6 +72,9 @@ struct PartDiff {
     std::uint64_t patches_left_out = 0;                                 // failing samples of more than 10000 groups
 };
 
+/// A half float as it is stored: 1 bit of sign, 5 of exponent, 10 of mantissa.
+using HalfBits = std::uint16_t;
+
 /// The pixels that count; empty: all.
 using DiffMask = std::vector<bool>;
 
@@ -85,6 +88,7 @@ public:
     /// The next rows of both, channels interleaved in each file's own order.
     void add(const float* a, const float* b, int rows);
     void add(const double* a, const double* b, int rows);
+    void add(const HalfBits* a, const HalfBits* b, int rows);
     int rows_added() const { return y_; }
     /// Complete when all rows have been added.
     PartDiff result() const;
@@ -92,6 +96,7 @@ public:
 private:
     template <class T> void add_rows(const T* a, const T* b, int rows);
     template <class T> bool add_equal_row(const T* a, const T* b);
+    void count_equal_row();
     template <class T> void add_pixel(const T* a, const T* b, int x);
     void add_failure(std::size_t channel, double difference, const DiffSample& where, double patch, double u, double v);
     PartDiff diff_;
@@ -99,6 +104,7 @@ private:
     const DiffMask& mask_;
     int y_ = 0, channels_ = 0;
     bool same_order_ = true;
+    std::vector<float> row_[2];  // of halves
     int patch_ = -1, u_ = -1, v_ = -1;  // places in a, where there are such channels
     std::map<std::pair<std::size_t, std::int64_t>, PatchFailures> groups_;
     std::vector<std::vector<std::uint64_t>> bins_;  // histograms, by channel

@@ -35,6 +35,35 @@ std::string text_of(const ImageWindow& w) {
     return std::to_string(w.width) + " x " + std::to_string(w.height) + " at (" + std::to_string(w.x) + "," + std::to_string(w.y) + ")";
 }
 
+/// All halves as floats.
+const std::vector<float>& half_values() {
+    static const std::vector<float> table = [] {
+        std::vector<float> t(65536);
+        for (std::uint32_t h = 0; h < t.size(); ++h) {
+            const std::uint32_t exponent = h >> 10 & 31, mantissa = h & 1023;
+            float v = std::ldexp(static_cast<float>(exponent == 0 ? mantissa : mantissa + 1024), exponent == 0 ? -24 : static_cast<int>(exponent) - 25);
+            if (exponent == 31) v = mantissa ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
+            t[h] = h >> 15 ? -v : v;
+        }
+        return t;
+    }();
+    return table;
+}
+/// The same as below for halves: those that are positive have the order of their bits.
+std::pair<bool, float> survey(const HalfBits* a, std::size_t n) {
+    std::int16_t most = 0;
+    std::uint16_t odd = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto bits = static_cast<std::int16_t>(a[i]);
+        most = bits > most ? bits : most;
+        odd = static_cast<std::uint16_t>(odd | ((a[i] & 0x7c00) == 0x7c00 ? 0xffff : 0));
+    }
+    return {odd == 0, half_values()[static_cast<std::uint16_t>(most)]};
+}
+double value_of(HalfBits h) { return half_values()[h]; }
+double value_of(float x) { return x; }
+double value_of(double x) { return x; }
+
 /// Whether all are finite, and then the largest of them or 0; without waiting for one number before the next.
 template <class T>
 std::pair<bool, T> survey(const T* a, std::size_t n) {
@@ -134,12 +163,16 @@ bool DiffMeter::add_equal_row(const T* a, const T* b) {
     for (int c = 0; c < channels_; ++c) {
         ChannelDiff& d = diff_.channels[static_cast<std::size_t>(c)];
         if (static_cast<double>(largest) > d.peak)
-            for (std::size_t i = static_cast<std::size_t>(c); i < n; i += static_cast<std::size_t>(channels_)) d.peak = std::max(d.peak, static_cast<double>(a[i]));
-        d.samples += static_cast<std::uint64_t>(diff_.window.width);
-        bins_[static_cast<std::size_t>(c)][0] += static_cast<std::uint64_t>(diff_.window.width);
+            for (std::size_t i = static_cast<std::size_t>(c); i < n; i += static_cast<std::size_t>(channels_)) d.peak = std::max(d.peak, value_of(a[i]));
     }
-    diff_.pixels += static_cast<std::uint64_t>(diff_.window.width);
+    count_equal_row();
     return true;
+}
+
+void DiffMeter::count_equal_row() {
+    const auto width = static_cast<std::uint64_t>(diff_.window.width);
+    for (std::size_t c = 0; c < diff_.channels.size(); ++c) diff_.channels[c].samples += width, bins_[c][0] += width;
+    diff_.pixels += width;
 }
 
 template <class T>
@@ -194,6 +227,20 @@ void DiffMeter::add_rows(const T* a, const T* b, int rows) {
 
 void DiffMeter::add(const float* a, const float* b, int rows) { add_rows(a, b, rows); }
 void DiffMeter::add(const double* a, const double* b, int rows) { add_rows(a, b, rows); }
+
+void DiffMeter::add(const HalfBits* a, const HalfBits* b, int rows) {
+    const std::size_t stride = static_cast<std::size_t>(diff_.window.width) * static_cast<std::size_t>(channels_);
+    const std::vector<float>& value = half_values();
+    for (int r = 0; r < rows; ++r, a += stride, b += stride) {
+        if (add_equal_row(a, b)) {
+            ++y_;
+            continue;
+        }
+        for (auto& row : row_) row.resize(stride);
+        for (std::size_t i = 0; i < stride; ++i) row_[0][i] = value[a[i]], row_[1][i] = value[b[i]];
+        add_rows(row_[0].data(), row_[1].data(), 1);
+    }
+}
 
 PartDiff DiffMeter::result() const {
     PartDiff all = diff_;

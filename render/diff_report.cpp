@@ -16,7 +16,11 @@ std::string brief(double x) {
     std::snprintf(text, sizeof text, "%.4g", x);
     return std::isnan(x) ? "nan" : text;
 }
-std::string at(const DiffSample& s) { return "(" + std::to_string(s.x) + "," + std::to_string(s.y) + ")"; }
+std::string at(const DiffSample& s) {
+    char text[32];
+    std::snprintf(text, sizeof text, "(%d,%d)", s.x, s.y);
+    return text;
+}
 std::string padded(std::string text, std::size_t width) {
     if (text.size() < width) text.resize(width, ' ');
     return text + " ";

@@ -51,8 +51,9 @@ Triple hunt_lab(const Rgb& c) {
     const float x = root(t.x), y = root(t.y), z = root(t.z), l = 116 * y - 16;
     return {l, 0.01f * l * 500 * (x - y), 0.01f * l * 200 * (y - z)};
 }
+float length(float x, float y) { return std::sqrt(x * x + y * y); }
 /// (2020, eq. 3) Kept between lightness and the plane of colours.
-float hyab(const Triple& p, const Triple& q) { return std::fabs(p.x - q.x) + std::hypot(p.y - q.y, p.z - q.z); }
+float hyab(const Triple& p, const Triple& q) { return std::fabs(p.x - q.x) + length(p.y - q.y, p.z - q.z); }
 
 constexpr float kColor = 0.7f, kFeature = 0.5f;  // exponents qc and qf
 float largest_color_error() {
@@ -174,7 +175,7 @@ struct Seen {
 std::vector<float> strength(const Plane& lightness, const Taps& detector, const Filters& f) {
     const Plane x = filtered(lightness, detector, f.gauss, f.reach()), y = filtered(lightness, f.gauss, detector, f.reach());
     std::vector<float> s(x.values.size());
-    for (std::size_t i = 0; i < s.size(); ++i) s[i] = std::hypot(x.values[i], y.values[i]);
+    for (std::size_t i = 0; i < s.size(); ++i) s[i] = length(x.values[i], y.values[i]);
     return s;
 }
 
@@ -202,7 +203,7 @@ float error_between(const Seen& a, const Seen& b, std::size_t i) {
     return std::pow(color, 1 - std::pow(std::min(feature / std::sqrt(2.0f), 1.0f), kFeature));
 }
 
-constexpr int kTile = 96, kBand = 64;
+constexpr int kTile = 128, kBand = 64;
 
 }  // namespace
 

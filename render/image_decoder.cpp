@@ -86,7 +86,7 @@ int decoder_threads(const ImageLimits& limits) {
 }
 
 struct Request {
-    std::int32_t part, first, rows, doubles, slot;
+    std::int32_t part, first, rows, kind, slot;
 };
 
 void send_fact(void* user, const char* what, const char* value) {
@@ -121,7 +121,7 @@ void answer(int socket, int failed, const IsoparmImageError& error) {
         send_all(socket, &part, sizeof part);
     }
     for (Request r; ::recv(socket, &r, sizeof r, MSG_WAITALL) == sizeof r;)
-        answer(socket, module.rows(file, r.part, r.first, r.rows, r.doubles, slots + static_cast<std::size_t>(r.slot) * kSlot, &error), error);
+        answer(socket, module.rows(file, r.part, r.first, r.rows, r.kind, slots + static_cast<std::size_t>(r.slot) * kSlot, &error), error);
     ::_exit(kFinished);
 }
 
@@ -259,6 +259,7 @@ void ImageDecoder::open() {
         p.tile_height = part.tile_height;
         p.exact = part.exact != 0;
         p.integers = std::all_of(p.types.begin(), p.types.end(), [](const std::string& t) { return t.find("int") != std::string::npos; });
+        p.halves = std::all_of(p.types.begin(), p.types.end(), [](const std::string& t) { return t == "half"; });
         if (part.deep || part.depth > 1) fail(part.deep ? "found a deep image, which is not compared; flatten both first" : "found a volume of several planes, which is not compared");
         if (part.width < 1 || part.height < 1 || part.channels < 1 || static_cast<std::size_t>(part.channels) != p.channels.size()) fail("found a part without pixels or channels");
         pixels += static_cast<std::uint64_t>(part.width) * static_cast<std::uint64_t>(part.height);
@@ -274,9 +275,9 @@ int ImageDecoder::most_rows(int part) const {
     return static_cast<int>(std::min<std::size_t>(kSlot / (sizeof(double) * static_cast<std::size_t>(p.data.width) * p.channels.size()), static_cast<std::size_t>(p.data.height)));
 }
 
-void ImageDecoder::begin(int part, int rows, bool doubles) {
+void ImageDecoder::begin(int part, int rows, RowKind kind) {
     if (pending_ >= 0) wait();
-    part_ = part, rows_ = std::min(rows, most_rows(part)), doubles_ = doubles, pending_ = -1;
+    part_ = part, rows_ = std::min(rows, most_rows(part)), kind_ = kind, pending_ = -1;
     if (rows_ < rows && rows_ < parts_[static_cast<std::size_t>(part)].data.height) fail("its blocks of rows are too large");
     ask(0);
 }
@@ -284,7 +285,7 @@ void ImageDecoder::begin(int part, int rows, bool doubles) {
 void ImageDecoder::ask(int k) {
     const int first = k * rows_, height = parts_[static_cast<std::size_t>(part_)].data.height;
     if (first >= height) return;
-    const Request r{part_, first, std::min(rows_, height - first), doubles_, k % 2};
+    const Request r{part_, first, std::min(rows_, height - first), static_cast<std::int32_t>(kind_), k % 2};
     const char* at = reinterpret_cast<const char*>(&r);
     for (std::size_t left = sizeof r; left > 0;) {
         const ssize_t n = ::send(child_->socket, at, left, MSG_NOSIGNAL);

@@ -31,7 +31,11 @@ struct ImagePart {
     int tile_height = 0;
     bool exact = false;                        // holds numbers that floats would round: ask for doubles
     bool integers = false;                     // none of the channels is of floating point
+    bool halves = false;                       // all channels are half floats
 };
+
+/// How rows are handed over.
+enum class RowKind { floats, doubles, halves };
 
 class ImageDecoder {
 public:
@@ -47,8 +51,8 @@ public:
     const std::vector<ImagePart>& parts() const { return parts_; }
     /// As many rows as one block can have of that part.
     int most_rows(int part) const;
-    /// From now on blocks of `rows` rows of that part, as doubles or floats.
-    void begin(int part, int rows, bool doubles);
+    /// From now on blocks of `rows` rows of that part.
+    void begin(int part, int rows, RowKind kind);
     /// Block k begins at row k * rows, channels interleaved; valid until the next call. While it is looked at, the child decodes the next.
     const void* block(int k);
 
@@ -65,7 +69,7 @@ private:
     std::unique_ptr<Child> child_;
     std::vector<ImagePart> parts_;
     int part_ = 0, rows_ = 0, pending_ = -1;
-    bool doubles_ = false;
+    RowKind kind_ = RowKind::floats;
 };
 
 }  // namespace isoparm

@@ -65,12 +65,12 @@ void check_channel_limits(const std::vector<ImagePart>& parts, const DiffLimits&
 }
 
 /// Rows of both parts, a block at a time: look(block of a, block of b, first row, rows).
-void for_rows(Pair& p, std::size_t part, bool doubles, const auto& look) {
+void for_rows(Pair& p, std::size_t part, RowKind kind, const auto& look) {
     const ImagePart &a = p.a.parts()[part], &b = p.b.parts()[static_cast<std::size_t>(p.part_of_b[part])];
     const int most = std::min(p.a.most_rows(static_cast<int>(part)), p.b.most_rows(p.part_of_b[part]));
     const int tile = std::max({a.tile_height, b.tile_height, 1}), rows = std::min({std::max((64 + tile - 1) / tile * tile, 1), most, a.data.height});
-    p.a.begin(static_cast<int>(part), rows, doubles);
-    p.b.begin(p.part_of_b[part], rows, doubles);
+    p.a.begin(static_cast<int>(part), rows, kind);
+    p.b.begin(p.part_of_b[part], rows, kind);
     for (int first = 0, k = 0; first < a.data.height; first += rows, ++k) {
         const void* of_a = p.a.block(k);
         const void* of_b = p.b.block(k);
@@ -88,7 +88,7 @@ DiffMask read_mask(const DiffRequest& request, const ImageWindow& window) {
         throw Error(ErrorKind::usage, "--mask: found " + std::to_string(p.data.width) + " x " + std::to_string(p.data.height) + " pixels in " + request.mask + ", expected " + std::to_string(window.width) + " x " + std::to_string(window.height) + ", as the images have");
     mask.resize(static_cast<std::size_t>(p.data.width) * static_cast<std::size_t>(p.data.height));
     const int rows = std::min(file.most_rows(0), 64);
-    file.begin(0, rows, false);
+    file.begin(0, rows, RowKind::floats);
     bool any = false;
     for (int first = 0, k = 0; first < p.data.height; first += rows, ++k) {
         const auto* values = static_cast<const float*>(file.block(k));
@@ -153,7 +153,7 @@ void compare_perceptually(Pair& p, std::size_t part, const DiffRequest& request,
     std::vector<float> colors[2], lumas[2];
     if (options.hdr && options.exposures <= 1) {
         LuminanceMeter luminance;
-        for_rows(p, part, false, [&](const void* rows_a, const void*, int, int rows) {
+        for_rows(p, part, RowKind::floats, [&](const void* rows_a, const void*, int, int rows) {
             in_a.linear(static_cast<const float*>(rows_a), width * static_cast<std::size_t>(rows), colors[0]);
             luminance.add(colors[0].data(), width * static_cast<std::size_t>(rows));
         });
@@ -174,7 +174,7 @@ void compare_perceptually(Pair& p, std::size_t part, const DiffRequest& request,
             if (counts(x, y)) sum += row[x - SsimMeter::radius], ++ssims;
         ssim += sum;
     });
-    for_rows(p, part, false, [&](const void* rows_a, const void* rows_b, int, int rows) {
+    for_rows(p, part, RowKind::floats, [&](const void* rows_a, const void* rows_b, int, int rows) {
         const std::size_t n = width * static_cast<std::size_t>(rows);
         in_a.linear(static_cast<const float*>(rows_a), n, colors[0]), in_b.linear(static_cast<const float*>(rows_b), n, colors[1]);
         in_a.luma(static_cast<const float*>(rows_a), n, lumas[0]), in_b.luma(static_cast<const float*>(rows_b), n, lumas[1]);
@@ -234,7 +234,9 @@ void compare(Pair& p, const DiffRequest& request, ImageDiff& result, DifferenceI
         DiffMeter meter(parts[i], b, request.limits, mask);
         DifferenceRows differences(parts[i], b, mask);
         std::vector<float> colors[2];
-        for_rows(p, i, doubles, [&](const void* rows_a, const void* rows_b, int first, int rows) {
+        const bool halves = parts[i].halves && b.halves && !output && !pictures;
+        for_rows(p, i, doubles ? RowKind::doubles : halves ? RowKind::halves : RowKind::floats, [&](const void* rows_a, const void* rows_b, int first, int rows) {
+            if (halves) return meter.add(static_cast<const HalfBits*>(rows_a), static_cast<const HalfBits*>(rows_b), rows);
             if (doubles) meter.add(static_cast<const double*>(rows_a), static_cast<const double*>(rows_b), rows);
             else meter.add(static_cast<const float*>(rows_a), static_cast<const float*>(rows_b), rows);
             if (!output && !pictures) return;

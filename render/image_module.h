@@ -45,8 +45,9 @@ typedef void (*IsoparmImageFact)(void* user, const char* what, const char* value
 IsoparmImageFile* isoparm_image_open(const char* file, const char* format, IsoparmImageError* error);
 /// 0: `part` and the facts are filled; 1: there is no part of that number; -1: an error.
 int isoparm_image_part(IsoparmImageFile* file, int number, IsoparmImagePart* part, IsoparmImageFact fact, void* user, IsoparmImageError* error);
-/// Interleaved channels, as floats (whole numbers as fractions of their largest), or as doubles, where 32-bit integers are themselves.
-int isoparm_image_rows(IsoparmImageFile* file, int number, int first, int rows, int doubles, void* to, IsoparmImageError* error);
+/// Interleaved channels: kind 0, floats (whole numbers as fractions of their largest); 1, doubles, where 32-bit integers are themselves;
+/// 2, half floats.
+int isoparm_image_rows(IsoparmImageFile* file, int number, int first, int rows, int kind, void* to, IsoparmImageError* error);
 void isoparm_image_close(IsoparmImageFile* file);
 
 /// What to write: `types` of the channels, one letter each: f float, h half, b byte, s 16 bits, u 32 bits. 'b' and 's' take fractions.

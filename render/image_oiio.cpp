@@ -189,11 +189,11 @@ void describe(IsoparmImageFile& f, int number, IsoparmImagePart& part, IsoparmIm
         }
 }
 
-void read_rows(IsoparmImageFile& f, int number, int first, int rows, bool doubles, void* to) {
+void read_rows(IsoparmImageFile& f, int number, int first, int rows, int kind, void* to) {
     const auto [subimage, level] = f.parts[number];
     if (!f.in->seek_subimage(subimage, level)) throw std::runtime_error(reason(f.in->geterror()));
     const OIIO::ImageSpec& s = f.in->spec();
-    if (!doubles) return read_native(*f.in, subimage, level, s, first, rows, OIIO::TypeDesc::FLOAT, to);
+    if (kind != 1) return read_native(*f.in, subimage, level, s, first, rows, kind == 2 ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT, to);
     const std::size_t pixels = std::size_t(s.width) * rows;
     std::vector<unsigned char> native(pixels * s.pixel_bytes(true));
     const OIIO::TypeDesc as_stored = s.channelformats.empty() ? s.format : OIIO::TypeDesc(OIIO::TypeDesc::UNKNOWN);
@@ -313,8 +313,8 @@ int isoparm_image_part(IsoparmImageFile* file, int number, IsoparmImagePart* par
     return guarded(error, [&] { describe(*file, number, *part, fact, user); }) ? -1 : 0;
 }
 
-int isoparm_image_rows(IsoparmImageFile* file, int number, int first, int rows, int doubles, void* to, IsoparmImageError* error) {
-    return guarded(error, [&] { read_rows(*file, number, first, rows, doubles != 0, to); });
+int isoparm_image_rows(IsoparmImageFile* file, int number, int first, int rows, int kind, void* to, IsoparmImageError* error) {
+    return guarded(error, [&] { read_rows(*file, number, first, rows, kind, to); });
 }
 
 void isoparm_image_close(IsoparmImageFile* file) { delete file; }

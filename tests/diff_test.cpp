@@ -129,6 +129,29 @@ TEST(Diff, BlocksAndOrderOfChannelsDoNotMatter) {
     EXPECT_EQ(x.failing, y.failing);
 }
 
+TEST(Diff, HalvesAreTheNumbersThatTheyStand) {
+    // 1, 1.5, 2^-24, 65504; -2, NaN, Inf, and 0 with either sign.
+    const std::vector<HalfBits> a{0x3c00, 0x3e00, 0x0001, 0x7bff}, b{0x3c00, 0x3c00, 0x0000, 0x7bff};
+    const ImagePart p = part(2, 1, {"R", "G"});
+    const DiffLimits limits;
+    const DiffMask all;
+    DiffMeter meter(p, p, limits, all), same(p, p, limits, all), odd(p, p, limits, all);
+    meter.add(a.data(), b.data(), 1);
+    EXPECT_EQ(meter.result().channels[0].max, 0x1p-24);
+    EXPECT_EQ(meter.result().channels[1].max, 0.5);
+    EXPECT_EQ(meter.result().channels[1].peak, 65504);
+    same.add(a.data(), a.data(), 1);
+    EXPECT_EQ(same.result().channels[1].peak, 65504);
+    EXPECT_EQ(same.result().channels[1].samples, 2u);
+    EXPECT_EQ(judge({same.result()}, limits), DiffVerdict::pass);
+    const std::vector<HalfBits> c{0xc000, 0x7e00, 0x7c00, 0x0000}, d{0xc000, 0x7e00, 0x7c00, 0x8000};
+    odd.add(c.data(), c.data(), 1);
+    EXPECT_EQ(odd.result().nonfinite, 2u) << "equal bits are not enough";
+    DiffMeter zeros(p, p, limits, all);
+    zeros.add(c.data(), d.data(), 1);
+    EXPECT_EQ(zeros.result().channels[1].differing, 1u) << "NaN, and not the sign of the zero";
+}
+
 TEST(Diff, PartsThatDifferInShapeAreNotCompared) {
     const ImagePart a = part(4, 3, {"R", "G"});
     EXPECT_TRUE(incomparable(a, a).empty());
