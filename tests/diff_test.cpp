@@ -2,6 +2,7 @@
 #include "diff.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <chrono>
 #include <cmath>
@@ -250,6 +251,21 @@ TEST(Flip, LawsOfADifference) {
     for (std::size_t i = 0; i < map.size(); ++i) ASSERT_NEAR(map[i], other[i], 1e-5) << "it is symmetric";
     EXPECT_EQ(flip_map(c, {}, 1), map) << "blocks of rows do not matter";
     EXPECT_EQ(flip_map(c, {}, 40), map);
+}
+
+TEST(Flip, ThreadsDoNotChangeTheMapNorSsim) {
+    Colors c{300, 70, {}, {}};
+    std::mt19937 random(2);
+    for (int i = 0; i < 3 * c.width * c.height; ++i) c.a.push_back(static_cast<float>(random() % 100) / 100), c.b.push_back(static_cast<float>(random() % 100) / 100);
+    const auto both = [&](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        std::vector<double> values;
+        for (const float v : flip_map(c, {})) values.push_back(v);
+        SsimMeter meter(3 * c.width, [&](int, const double* row) { values.insert(values.end(), row, row + 3 * c.width - 10); });
+        meter.add(c.a.data(), c.b.data(), c.height);
+        return values;
+    };
+    EXPECT_EQ(both(1), both(4));
 }
 
 TEST(Ssim, EqualsAnotherImplementation) {
