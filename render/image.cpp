@@ -8,17 +8,14 @@
 #include <filesystem>
 
 #include "error.h"
-#include "image_module.h"
+#include "image_loader.h"
 #include "io/atomic_file.h"
-#include "module.h"
 #include "palette.h"
 
 namespace isoparm {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kModule = "isoparm_image";
 
 struct Format {
     const char* extension;
@@ -102,7 +99,7 @@ void write_file(const std::string& path, const std::string& file, const Format& 
         values.push_back(value.c_str());
     }
     IsoparmImageError error{};
-    if (module_function<decltype(&isoparm_image_write)>(kModule, "isoparm_image_write")(file.c_str(), &pixels, format.lossy, names.data(), values.data(), static_cast<int>(names.size()),
+    if (image_module().write(file.c_str(), &pixels, format.lossy, names.data(), values.data(), static_cast<int>(names.size()),
                        &error) != 0) {
         std::string told = error.text;  // about the temporary, which is not the user's business
         if (const auto at = told.find(file); at != std::string::npos)
@@ -149,7 +146,7 @@ Image read_image(const std::string& path) {
     IsoparmImageError error{};
     std::error_code ignored;
     if (!fs::exists(path, ignored)) throw Error(ErrorKind::io, path + ": there is no such file");
-    if (module_function<decltype(&isoparm_image_read)>(kModule, "isoparm_image_read")(path.c_str(), &take_pixels, &image, &error) != 0)
+    if (image_module().read(path.c_str(), &take_pixels, &image, &error) != 0)
         throw Error(ErrorKind::io, path + ": cannot be read as an image: " + error.text);
     return image;
 }

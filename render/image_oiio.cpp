@@ -2,11 +2,14 @@
 // read or written, because linking OpenImageIO costs half a second at every start.
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <exception>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "image_module.h"
@@ -91,6 +94,196 @@ void read(const char* file, IsoparmImageSink sink, void* user) {
          reinterpret_cast<const float*>(data.data()));
 }
 
+// ---- by rows ------------------------------------------------------------------------------------------------------
+
+/// Metadata without which the same numbers may be another picture.
+constexpr const char* kSpace[] = {"oiio:ColorSpace", "oiio:Gamma", "chromaticities", "ICCProfile", "Orientation", "PixelAspectRatio", "oiio:UnassociatedAlpha"};
+
+bool needs_double(OIIO::TypeDesc t) {
+    return t == OIIO::TypeDesc::UINT32 || t == OIIO::TypeDesc::INT32 || t == OIIO::TypeDesc::DOUBLE || t == OIIO::TypeDesc::UINT64 || t == OIIO::TypeDesc::INT64;
+}
+bool any_exact(const OIIO::ImageSpec& s) {
+    for (int c = 0; c < s.nchannels; ++c)
+        if (needs_double(s.channelformat(c))) return true;
+    return false;
+}
+
+template <class T>
+double value_at(const unsigned char* from) {
+    T x;
+    std::memcpy(&x, from, sizeof x);
+    return static_cast<double>(x);
+}
+/// One value as it is stored; 32-bit integers are not made fractions, which would hide that 3 is not 4.
+double exact_value(OIIO::TypeDesc t, const unsigned char* from) {
+    if (t == OIIO::TypeDesc::UINT32) return value_at<std::uint32_t>(from);
+    if (t == OIIO::TypeDesc::INT32) return value_at<std::int32_t>(from);
+    if (t == OIIO::TypeDesc::UINT64) return value_at<std::uint64_t>(from);
+    if (t == OIIO::TypeDesc::INT64) return value_at<std::int64_t>(from);
+    if (t == OIIO::TypeDesc::DOUBLE) return value_at<double>(from);
+    float x = 0;
+    OIIO::convert_pixel_values(t, from, OIIO::TypeDesc::FLOAT, &x, 1);
+    return x;
+}
+void exact_rows(const OIIO::ImageSpec& s, const std::vector<unsigned char>& native, std::size_t pixels, double* to) {
+    const unsigned char* from = native.data();
+    for (std::size_t i = 0; i < pixels; ++i)
+        for (int c = 0; c < s.nchannels; ++c) {
+            const OIIO::TypeDesc t = s.channelformat(c);
+            *to++ = exact_value(t, from);
+            from += t.size();
+        }
+}
+
+void check_read(OIIO::ImageInput& in, bool read) {
+    if (!read || in.has_error()) throw std::runtime_error(reason(in.geterror()));
+}
+/// Tiled files are read by whole tiles, which need not end where the image does.
+void read_native(OIIO::ImageInput& in, int subimage, int level, const OIIO::ImageSpec& s, int first, int rows, OIIO::TypeDesc type, void* to) {
+    const int from = s.y + first;
+    check_read(in, s.tile_width ? in.read_tiles(subimage, level, s.x, s.x + s.width, from, from + rows, s.z, s.z + 1, 0, s.nchannels, type, to)
+                                : in.read_scanlines(subimage, level, from, from + rows, s.z, 0, s.nchannels, type, to));
+}
+
+}  // namespace
+
+struct IsoparmImageFile {
+    std::unique_ptr<OIIO::ImageInput> in;
+    std::vector<std::pair<int, int>> parts;  // subimage, level
+};
+
+namespace {
+
+void find_parts(IsoparmImageFile& f) {
+    for (int s = 0; f.in->seek_subimage(s, 0); ++s)
+        for (int level = 0; f.in->seek_subimage(s, level); ++level) {
+            if (f.parts.size() >= 4096) throw std::runtime_error("found more than 4096 parts");
+            f.parts.push_back({s, level});
+        }
+    (void)f.in->geterror();  // that the last one was not there
+    if (f.parts.empty()) throw std::runtime_error("found no image");
+}
+
+void describe(IsoparmImageFile& f, int number, IsoparmImagePart& part, IsoparmImageFact fact, void* user) {
+    const auto [subimage, level] = f.parts[number];
+    const OIIO::ImageSpec s = f.in->spec(subimage, level);
+    part = {s.x, s.y, s.width, s.height, s.full_x, s.full_y, s.full_width, s.full_height, s.nchannels, s.tile_height, any_exact(s), s.deep, s.depth};
+    for (int c = 0; c < s.nchannels; ++c) {
+        fact(user, "channel", c < int(s.channelnames.size()) ? s.channelnames[c].c_str() : "");
+        fact(user, "type", s.channelformat(c).c_str());
+    }
+    std::string name(s.get_string_attribute("oiio:subimagename"));
+    if (level > 0) name += "/level" + std::to_string(level);
+    fact(user, "name", name.c_str());
+    for (const char* key : kSpace)
+        if (const auto* found = s.find_attribute(key)) {
+            std::string text = std::string(key) + "=";
+            if (found->type().basetype == OIIO::TypeDesc::UINT8) {  // a profile: its digest tells it apart
+                std::uint64_t hash = 14695981039346656037u;
+                for (std::size_t i = 0; i < found->type().size(); ++i) hash = (hash ^ static_cast<const unsigned char*>(found->data())[i]) * 1099511628211u;
+                text += std::to_string(hash);
+            } else
+                text += s.metadata_val(*found);
+            const bool usual = text == "PixelAspectRatio=1" || text.rfind("Orientation=1", 0) == 0 || (s.alpha_channel < 0 && std::string(key) == "oiio:UnassociatedAlpha");
+            if (!usual) fact(user, "space", text.c_str());
+        }
+}
+
+void read_rows(IsoparmImageFile& f, int number, int first, int rows, int kind, void* to) {
+    const auto [subimage, level] = f.parts[number];
+    if (!f.in->seek_subimage(subimage, level)) throw std::runtime_error(reason(f.in->geterror()));
+    const OIIO::ImageSpec& s = f.in->spec();
+    if (kind != 1) return read_native(*f.in, subimage, level, s, first, rows, kind == 2 ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT, to);
+    const std::size_t pixels = std::size_t(s.width) * rows;
+    std::vector<unsigned char> native(pixels * s.pixel_bytes(true));
+    const OIIO::TypeDesc as_stored = s.channelformats.empty() ? s.format : OIIO::TypeDesc(OIIO::TypeDesc::UNKNOWN);
+    read_native(*f.in, subimage, level, s, first, rows, as_stored, native.data());
+    exact_rows(s, native, pixels, static_cast<double*>(to));
+}
+
+OIIO::TypeDesc type_of(char letter) {
+    switch (letter) {
+        case 'h': return OIIO::TypeDesc::HALF;
+        case 'b': return OIIO::TypeDesc::UINT8;
+        case 's': return OIIO::TypeDesc::UINT16;
+        case 'u': return OIIO::TypeDesc::UINT32;
+        default: return OIIO::TypeDesc::FLOAT;
+    }
+}
+
+OIIO::ImageSpec spec_of(const IsoparmImageLayer& l) {
+    const IsoparmImagePart& p = l.part;
+    OIIO::ImageSpec s(p.width, p.height, p.channels, type_of(l.types[0]));
+    s.x = p.x, s.y = p.y, s.full_x = p.full_x, s.full_y = p.full_y, s.full_width = p.full_width, s.full_height = p.full_height;
+    s.channelnames.assign(l.channels, l.channels + p.channels);
+    s.alpha_channel = -1;
+    for (int c = 0; c < p.channels; ++c) {
+        if (s.channelnames[c] == "A") s.alpha_channel = c;
+        if (l.types[c] != l.types[0]) s.channelformats.assign(p.channels, OIIO::TypeDesc::UNKNOWN);
+    }
+    for (std::size_t c = 0; c < s.channelformats.size(); ++c) s.channelformats[c] = type_of(l.types[c]);
+    if (*l.name) s.attribute("oiio:subimagename", l.name), s.attribute("name", l.name);
+    s.attribute("oiio:ColorSpace", l.space);
+    s.attribute("oiio:UnassociatedAlpha", 1);
+    s.attribute("DateTime", "");
+    s.attribute("Software", "isoparm");
+    return s;
+}
+
+}  // namespace
+
+struct IsoparmImageWriter {
+    std::string name;
+    std::unique_ptr<OIIO::ImageOutput> out;
+    std::vector<OIIO::ImageSpec> specs;
+    int open = -1;
+};
+
+namespace {
+
+void go_to(IsoparmImageWriter& w, int layer) {
+    while (w.open < layer) {
+        const bool first = w.open < 0, several = w.specs.size() > 1;
+        ++w.open;
+        const bool good = !first ? w.out->open(w.name, w.specs[w.open], OIIO::ImageOutput::AppendSubimage)
+                          : several ? w.out->open(w.name, int(w.specs.size()), w.specs.data())
+                                    : w.out->open(w.name, w.specs[0]);
+        if (!good) throw std::runtime_error(reason(w.out->geterror()));
+    }
+}
+
+void put_rows(IsoparmImageWriter& w, int layer, int first, int rows, const float* data) {
+    go_to(w, layer);
+    const OIIO::ImageSpec& s = w.specs[layer];
+    const std::size_t pixels = std::size_t(s.width) * rows;
+    std::vector<unsigned char> native;
+    const void* from = data;
+    OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;
+    if (any_exact(s)) {  // floats that mean whole numbers
+        type = s.channelformats.empty() ? s.format : OIIO::TypeDesc(OIIO::TypeDesc::UNKNOWN);
+        native.resize(pixels * s.pixel_bytes(true));
+        unsigned char* to = native.data();
+        for (std::size_t i = 0; i < pixels * s.nchannels; ++i) {
+            const OIIO::TypeDesc t = s.channelformat(int(i % s.nchannels));
+            if (const auto whole = static_cast<std::uint32_t>(data[i] > 0 ? data[i] : 0); t == OIIO::TypeDesc::UINT32) std::memcpy(to, &whole, sizeof whole);
+            else OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, data + i, t, to, 1);
+            to += t.size();
+        }
+        from = native.data();
+    }
+    if (!w.out->write_scanlines(s.y + first, s.y + first + rows, s.z, type, from)) throw std::runtime_error(reason(w.out->geterror()));
+}
+
+/// 2.4.7 reports success for PNG on a full disk.
+void read_back(const std::string& name) {
+    const auto in = opened(name.c_str());
+    for (int s = 0; in->seek_subimage(s, 0); ++s) {
+        const OIIO::ImageSpec spec = in->spec();
+        std::vector<float> rows(std::size_t(spec.width) * spec.nchannels * 64);
+        for (int y = 0; y < spec.height; y += 64) read_native(*in, s, 0, spec, y, std::min(64, spec.height - y), OIIO::TypeDesc::FLOAT, rows.data());
+    }
+}
+
 }  // namespace
 
 int isoparm_image_write(const char* file, const IsoparmImagePixels* pixels, int lossy, const char* const* names,
@@ -100,4 +293,58 @@ int isoparm_image_write(const char* file, const IsoparmImagePixels* pixels, int 
 
 int isoparm_image_read(const char* file, IsoparmImageSink sink, void* user, IsoparmImageError* error) {
     return guarded(error, [&] { read(file, sink, user); });
+}
+
+IsoparmImageFile* isoparm_image_open(const char* file, const char* format, IsoparmImageError* error) {
+    auto f = std::make_unique<IsoparmImageFile>();
+    const int failed = guarded(error, [&] {
+        f->in = OIIO::ImageInput::create(format);
+        if (!f->in) throw std::runtime_error(reason(OIIO::geterror()));
+        OIIO::ImageSpec as_stored, found;
+        as_stored.attribute("oiio:UnassociatedAlpha", 1);
+        if (!f->in->open(file, found, as_stored)) throw std::runtime_error(reason(f->in->geterror()));
+        find_parts(*f);
+    });
+    return failed ? nullptr : f.release();
+}
+
+int isoparm_image_part(IsoparmImageFile* file, int number, IsoparmImagePart* part, IsoparmImageFact fact, void* user, IsoparmImageError* error) {
+    if (number < 0 || number >= int(file->parts.size())) return 1;
+    return guarded(error, [&] { describe(*file, number, *part, fact, user); }) ? -1 : 0;
+}
+
+int isoparm_image_rows(IsoparmImageFile* file, int number, int first, int rows, int kind, void* to, IsoparmImageError* error) {
+    return guarded(error, [&] { read_rows(*file, number, first, rows, kind, to); });
+}
+
+void isoparm_image_close(IsoparmImageFile* file) { delete file; }
+
+IsoparmImageWriter* isoparm_image_create(const char* file, const IsoparmImageLayer* layers, int count, IsoparmImageError* error) {
+    auto w = std::make_unique<IsoparmImageWriter>();
+    const int failed = guarded(error, [&] {
+        w->name = file;
+        w->out = OIIO::ImageOutput::create(file);
+        if (!w->out) throw std::runtime_error(reason(OIIO::geterror()));
+        for (int i = 0; i < count; ++i) w->specs.push_back(spec_of(layers[i]));
+        go_to(*w, 0);
+    });
+    return failed ? nullptr : w.release();
+}
+
+int isoparm_image_put(IsoparmImageWriter* file, int layer, int first, int rows, const float* data, IsoparmImageError* error) {
+    return guarded(error, [&] { put_rows(*file, layer, first, rows, data); });
+}
+
+int isoparm_image_finish(IsoparmImageWriter* file, IsoparmImageError* error) {
+    const std::unique_ptr<IsoparmImageWriter> w(file);
+    return guarded(error, [&] {
+        if (!w->out->close() || w->out->has_error()) throw std::runtime_error(reason(w->out->geterror()));
+        read_back(w->name);
+    });
+}
+
+void isoparm_image_threads(int threads) {
+    OIIO::attribute("threads", threads);
+    OIIO::attribute("exr_threads", threads == 1 ? -1 : threads);
+    (void)OIIO::ImageInput::create("openexr");  // lists its formats now, once, and not in every child
 }

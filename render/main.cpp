@@ -24,8 +24,8 @@ const Command* const kCommands[] = {
     &figures_command,     // all pictures
     &limit_command,       // against OpenSubdiv
     &study_command,       // how well methods tessellate
+    &diff_command,        // one image against another
 };
-const std::vector<std::string> kNotBuiltYet = {"diff"};
 
 std::string help() {
     std::string text = "usage: isoparm COMMAND ...\n\nFrom boundary curves to surfaces, to meshes of proved error, to ray-traced pictures.\n\n";
@@ -35,7 +35,7 @@ std::string help() {
         text += "  " + name + c->summary + "\n";
     }
     return text + R"(
-isoparm COMMAND --help tells more; --version prints the version. Not built yet: diff.
+isoparm COMMAND --help tells more; --version prints the version.
 Every command knows --quiet and --threads N (or ISOPARM_THREADS). Results go to stdout, messages to stderr.
 
 Exit codes: 0 success, 1 success with a warning, 2 something could not be proved or failed a check, 3 not comparable,
@@ -43,12 +43,9 @@ Exit codes: 0 success, 1 success with a warning, 2 something could not be proved
 )";
 }
 
-bool is_not_built(const std::string& name) { return std::find(kNotBuiltYet.begin(), kNotBuiltYet.end(), name) != kNotBuiltYet.end(); }
-
 const Command& find_command(const std::string& name) {
     for (const Command* c : kCommands)
         if (name == c->name) return *c;
-    if (is_not_built(name)) throw Error(ErrorKind::usage, "the command " + name + " is not built yet");
     std::vector<std::string> names;
     for (const Command* c : kCommands) names.push_back(c->name);
     throw Error(ErrorKind::usage, "unknown command " + quoted(name) + ", expected one of: " + listed(names) + did_you_mean(name, names));
@@ -70,8 +67,6 @@ int run(std::vector<std::string> arguments) {
         std::cout << "isoparm " ISOPARM_VERSION "\n";
     } else if (first == "--help" || first == "-h" || (first == "help" && arguments.empty())) {
         std::cout << help();
-    } else if (is_not_built(first == "help" ? arguments.front() : first) && (first == "help" || asks_for_help(arguments))) {
-        std::cout << "isoparm " << (first == "help" ? arguments.front() : first) << ": not built yet\n";
     } else if (first == "help") {
         std::cout << find_command(arguments.front()).help;
     } else {

@@ -40,10 +40,10 @@ void* module_function(const std::string& name, const char* function) {
         throw Error(ErrorKind::io, "the module " + name + ".so was found neither in " + beside.string() + " nor in " +
                                        (beside.parent_path() / "lib" / "isoparm").string() + "; build or install isoparm again");
     }
-    void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);  // looking all symbols up takes most of the time
     if (!library) throw Error(ErrorKind::io, file + ": the module cannot be loaded: " + dlerror());
     void* found = dlsym(library, function);
-    if (!found) throw Error(ErrorKind::io, file + ": found another program's library, expected the module " + name);
+    if (!found) throw Error(ErrorKind::io, file + ": found another program's library, or another version's, expected the module " + name);
     return found;
 }
 

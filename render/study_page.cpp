@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "html_text.h"
 #include "peer.h"
 #include "study_plots.h"
 
@@ -27,37 +28,6 @@ tr.first td { border-top: 2px solid var(--line); } tbody tr:nth-child(even) td {
 .missed { color: var(--bad); }
 code { font-size: .92em; overflow-wrap: anywhere; }
 )";
-
-std::string escaped(const std::string& text) {
-    std::string r;
-    for (const char c : text) {
-        if (c == '<')
-            r += "&lt;";
-        else if (c == '>')
-            r += "&gt;";
-        else if (c == '&')
-            r += "&amp;";
-        else if (c == '"')
-            r += "&quot;";
-        else
-            r += c;
-    }
-    return r;
-}
-
-std::string base64(const std::string& bytes) {
-    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve(bytes.size() * 4 / 3 + 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const auto at = [&](std::size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0u; };
-        const unsigned all = at(i) << 16 | at(i + 1) << 8 | at(i + 2);
-        text += digits[all >> 18], text += digits[all >> 12 & 63];
-        text += i + 1 < bytes.size() ? digits[all >> 6 & 63] : '=';
-        text += i + 2 < bytes.size() ? digits[all & 63] : '=';
-    }
-    return text;
-}
 
 /// A number as a reader wants it: whole ones and large ones whole, others with four digits.
 std::string brief(const std::string& number) {

@@ -17,8 +17,6 @@ TEST(Commands, HelpAndVersion) {
 }
 TEST(Commands, UsageErrorsSuggest) {
     expect("rendr x", 64, "did you mean \"render\"?");
-    expect("diff x", 64, "not built yet");
-    expect("diff --help", 0, "isoparm diff: not built yet");
     expect("info " + scene("coons") + " --jsn", 64, "did you mean \"--json\"?");
     expect("info", 64, "expected one scene");
     expect("info a b", 64, "expected one scene");

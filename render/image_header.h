@@ -1,0 +1,29 @@
+// image_header.h -- what an image file says of itself, read without any decoder: which format it really is, and how large.
+//
+// The first look at a file that nobody vouches for. Nothing is allocated from what the file claims, and nothing outside of `bytes` is
+// read; any bytes end in a header or an Error. Pure; thread-safe.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace isoparm {
+
+struct ImageHeader {
+    std::string format;        // OpenImageIO's name: openexr, png, jpeg, tiff, targa, bmp, pnm
+    std::uint64_t pixels = 0;  // of all parts together; at least the one that could be read
+    std::uint64_t row = 0;     // samples of the longest row
+};
+
+/// As much of a file as is looked at.
+constexpr std::size_t kHeaderBytes = std::size_t{1} << 20;
+
+/// The extensions that are read, each with its format: {"exr", "openexr"}.
+const std::vector<std::pair<std::string, std::string>>& readable_formats();
+
+/// `bytes`: the first kHeaderBytes of the file, or all of it; `size`: of the file; `path` is for messages. The extension of the path and the
+/// bytes must agree. Throws Error(io): what was found, and what was expected.
+ImageHeader read_image_header(std::string_view bytes, std::uint64_t size, const std::string& path);
+
+}  // namespace isoparm
