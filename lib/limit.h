@@ -17,8 +17,6 @@
 
 namespace isoparm {
 
-enum class Scheme { catmull_clark, loop, bilinear };
-
 /// Position and derivatives of the limit surface in the parameters of its face.
 struct LimitPoint {
     Point p, du, dv, duu, duv, dvv;

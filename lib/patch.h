@@ -60,6 +60,8 @@ public:
         virtual Enclosure enclose(const Box& box) const = 0;
         /// Encloses every position over the box; cheaper than enclose().
         virtual Vec3<Interval> enclose_points(const Box& box) const = 0;
+        /// The unit normal at a point where S_u or S_v does not exist, if the surface has one there all the same.
+        virtual std::optional<Point> singular_normal(double, double) const { return {}; }
     };
     explicit Patch(std::shared_ptr<const Concept> impl) : impl_(std::move(impl)) {}
 
@@ -84,6 +86,7 @@ public:
     void frames(std::span<const double> u, std::span<const double> v, const FrameArrays& out, Isa isa = chosen_isa()) const;
     Enclosure enclose(const Box& box) const { return impl_->enclose(box); }
     Vec3<Interval> enclose_points(const Box& box) const { return impl_->enclose_points(box); }
+    std::optional<Point> singular_normal(double u, double v) const { return impl_->singular_normal(u, v); }
     /// Encloses the exact position at (u,v).
     Vec3<Interval> enclose_point(double u, double v) const;
 

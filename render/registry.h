@@ -58,6 +58,9 @@ std::map<std::string, std::vector<std::string>> triangle_methods();
 /// The keys c0, c1, d0, d1.
 CoonsCurves frame_of(const Json&, SceneBuilder&);
 
+// build_subdivision.cpp
+BuiltSurface build_subdivision(const Json&, SceneBuilder&);
+
 // build_translational.cpp: of curves to move
 BuiltSurface build_translational(const Json&, SceneBuilder&);
 BuiltSurface build_translational_blend(const Json&, SceneBuilder&);

@@ -1,5 +1,7 @@
 #include "patches/transformed.h"
 
+#include <cmath>
+
 namespace isoparm {
 namespace {
 
@@ -51,6 +53,12 @@ public:
     }
 
     Vec3<Interval> enclose_points(const Box& box) const override { return map_.point(patch_.enclose_points(box)); }
+    std::optional<Point> singular_normal(double u, double v) const override {
+        const auto n = patch_.singular_normal(u, v);
+        if (!n) return {};
+        const Point t = normalized(cross(std::fabs(n->x) < 0.6 ? Point{1, 0, 0} : Point{0, 1, 0}, *n));
+        return normalized(cross(map_.vector(t), map_.vector(cross(*n, t))));
+    }
 
 private:
     Patch patch_;

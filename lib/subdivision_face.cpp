@@ -1,0 +1,416 @@
+#include "subdivision_face.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "error.h"
+
+namespace isoparm {
+namespace {
+
+using Box3 = Vec3<Interval>;
+using Controls = std::vector<Vec3<Interval>>;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kDeepest = 48;       // parameters of sub-faces stay exact
+constexpr int kAllSmooth = 11;     // by then semi-sharp creases are smooth
+constexpr int kLimitSteps = 400;   // the slowest neighbourhood shrinks by 0.66 a step
+
+double size_of(const Box3& b) { return rounding::length_up(b.x.hi - b.x.lo, b.y.hi - b.y.lo, b.z.hi - b.z.lo); }
+Point middle(const Box3& b) { return {mid(b.x), mid(b.y), mid(b.z)}; }
+Box3 hull(const Box3& a, const Box3& b) { return {hull(a.x, b.x), hull(a.y, b.y), hull(a.z, b.z)}; }
+/// All rules are means with weights >= 0, so the limit surface over the face lies in the hull of its ring.
+Box3 hull_of(const Ring<Interval>& ring) {
+    Box3 all = ring.points[0];
+    for (const auto& p : ring.points) all = hull(all, p);
+    return all;
+}
+
+/// c[i][k]: 48 times the coefficient of x^i of the k-th uniform cubic B-spline on [-1/2, 1/2].
+constexpr double kSpline[4][4] = {{1, 23, 23, 1}, {-6, -30, 30, 6}, {12, -12, -12, 12}, {-8, 24, -24, 8}};
+
+/// The twelve basis functions of a regular Loop triangle, times 12, by the barycentric coordinates of the corners (Stam 1998).
+template <class P> std::array<P, 12> box_splines(const P& u, const P& v, const P& w) {
+    const auto corner = [](const P& a, const P& b, const P& c) {
+        const P bc = b * c, bb = b * b, cc = c * c, aa = a * a;
+        return P(6) * aa * aa + P(24) * aa * a * (b + c) + P(24) * aa * (bb + cc) + P(60) * aa * bc + P(8) * a * (bb * b + cc * c) + P(36) * a * bc * (b + c) + bb * bb +
+               cc * cc + P(6) * bc * (bb + cc) + P(12) * bc * bc;
+    };
+    const auto across = [](const P& a, const P& b, const P& c) {
+        const P ab = a * b, aa = a * a, bb = b * b;
+        return aa * aa + bb * bb + P(6) * ab * (aa + bb) + P(12) * ab * ab + P(2) * c * (aa * a + bb * b) + P(6) * c * ab * (a + b);
+    };
+    const auto outer = [](const P& a, const P& b) { return a * a * a * (a + P(2) * b); };
+    return {corner(u, v, w), corner(v, w, u), corner(w, u, v), across(u, v, w), across(v, w, u), across(w, u, v),
+            outer(u, v),     outer(u, w),     outer(v, w),     outer(v, u),     outer(w, u),     outer(w, v)};
+}
+
+/// A homogeneous polynomial, by the exponents of u, v and w.
+struct Form {
+    std::map<std::array<int, 3>, double> c;
+    Form() = default;
+    explicit Form(int constant) { c[{0, 0, 0}] = constant; }
+    explicit Form(std::map<std::array<int, 3>, double> terms) : c(std::move(terms)) {}
+    friend Form operator+(Form a, const Form& b) {
+        for (const auto& [e, x] : b.c) a.c[e] += x;
+        return a;
+    }
+    friend Form operator*(const Form& a, const Form& b) {
+        Form r;
+        for (const auto& [d, x] : a.c)
+            for (const auto& [e, y] : b.c) r.c[{d[0] + e[0], d[1] + e[1], d[2] + e[2]}] += x * y;
+        return r;
+    }
+};
+
+/// A regular sub-face: polynomials in (u,v) - centre of the face's parameters.
+struct Cell {
+    double u, v;  // the centre
+    Vec3<Polynomial> exact;
+    int degree;
+    std::vector<Point> c;  // the middles of the coefficients, at (degree + 1) i + j
+
+    void keep_middles() {
+        c.resize((degree + 1) * (degree + 1));
+        for (int i = 0; i <= exact.x.degree_u(); ++i)
+            for (int j = 0; j <= exact.x.degree_v(); ++j)
+                c[(degree + 1) * i + j] = {mid(exact.x.coefficient(i, j)), mid(exact.y.coefficient(i, j)), mid(exact.z.coefficient(i, j))};
+    }
+};
+
+/// A square or triangle with the corner (u,v) and the sides h along u and v (below 0: turned by half).
+struct Place {
+    double u, v, h;
+    Interval across_u() const { return h > 0 ? Interval(u, u + h) : Interval(u + h, u); }
+    Interval across_v() const { return h > 0 ? Interval(v, v + h) : Interval(v + h, v); }
+    Place child(int k, bool triangle) const {
+        const double half = h / 2;
+        if (!triangle) return {k == 1 || k == 2 ? u + half : u, k >= 2 ? v + half : v, half};
+        return k == 3 ? Place{u + half, v + half, -half} : Place{k == 1 ? u + half : u, k == 2 ? v + half : v, half};
+    }
+};
+
+Cell bicubic(const Controls& p, const Place& at) {
+    Cell cell{at.u + at.h / 2, at.v + at.h / 2, {}, 3, {}};
+    const Polynomial x = Polynomial::variable_u(at.across_u()), y = Polynomial::variable_v(at.across_v()), all = x * x * x * (y * y * y);
+    for (int axis = 0; axis < 3; ++axis) {
+        Polynomial& f = cell.exact[axis] = all;
+        Interval rows[4][4];  // [i][l]: along u done
+        for (int i = 0; i < 4; ++i)
+            for (int l = 0; l < 4; ++l) {
+                rows[i][l] = Interval(0);
+                for (int k = 0; k < 4; ++k) rows[i][l] += Interval(kSpline[i][k]) * p[4 * k + l][axis];
+            }
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) {
+                Interval sum(0);
+                for (int l = 0; l < 4; ++l) sum += Interval(kSpline[j][l]) * rows[i][l];
+                f.coefficient(i, j) = sum / Interval(2304) * Interval(std::pow(at.h, -i - j));  // powers of two
+            }
+    }
+    cell.keep_middles();
+    return cell;
+}
+
+Cell quartic(const Controls& p, const Place& at) {
+    const Polynomial x = Polynomial::variable_u(at.across_u()), y = Polynomial::variable_v(at.across_v());
+    Cell cell{mid(at.across_u()), mid(at.across_v()), {}, 4, {}};
+    const Interval scale(1 / at.h);
+    const Polynomial v = (x - Polynomial(at.u)) * Polynomial(scale), w = (y - Polynomial(at.v)) * Polynomial(scale), u = Polynomial(1) - v - w;
+    const auto basis = box_splines<Polynomial>(u, v, w);
+    for (int axis = 0; axis < 3; ++axis) {
+        Polynomial sum(0);
+        for (int k = 0; k < 12; ++k) sum = sum + basis[k] * Polynomial(p[k][axis] / Interval(12));
+        cell.exact[axis] = sum;
+    }
+    cell.keep_middles();
+    return cell;
+}
+
+/// What is left around a vertex.
+struct Core {
+    double u, v;     // of the vertex
+    Box3 vertex;     // its limit position
+    std::optional<Point> normal;
+};
+
+/// The limit position of corner k of the face: its ring shrinks towards it.
+Box3 limit_position(Ring<Interval> ring, int k, Scheme scheme) {
+    Box3 all = hull_of(ring);
+    for (int step = 0; step < kLimitSteps; ++step) {
+        Ring<Interval> next = Subdivider<Interval>(ring, scheme).child(k);
+        const Box3 smaller = hull_of(next);
+        if (!(size_of(smaller) < 0.99 * size_of(all))) break;
+        ring = std::move(next), all = smaller;
+    }
+    return all;
+}
+
+/// The limit of the normals of the sub-faces at corner k: moved so that this corner stays at 0 and scaled, their rings converge to an affine image of the
+/// characteristic map.
+std::optional<Point> limit_normal(const Ring<Interval>& exact, int k, Scheme scheme) {
+    Ring<double> ring;
+    for (const auto& p : exact.points) ring.points.push_back(middle(p));
+    ring.sharpness = exact.sharpness, ring.faces = exact.faces;
+    for (const auto& c : exact.creases) ring.creases.push_back({c.a, c.b, c.sharpness});
+    std::optional<Point> last;
+    for (int step = 0; step < kLimitSteps; ++step) {
+        const auto& f = ring.faces[0];
+        const Point origin = ring.points[f[k]];
+        double size = 0;
+        for (Point& p : ring.points) p = p - origin, size = std::max(size, length(p));
+        if (!(size > 0) || !std::isfinite(size)) return {};
+        for (Point& p : ring.points) p = p / size;
+        Point area{0, 0, 0};
+        for (std::size_t i = 0; i < f.size(); ++i) area += cross(ring.points[f[i]], ring.points[f[(i + 1) % f.size()]]);
+        const Point n = normalized(area);
+        if (!finite(n)) return {};
+        if (last && length(n - *last) < 4e-16) return n;
+        last = n;
+        ring = Subdivider<double>(ring, scheme).child(k);
+    }
+    return last;
+}
+
+class SubdivisionFace final : public Patch::Concept {
+public:
+    SubdivisionFace(const Ring<Interval>& ring, Scheme scheme, FaceLimits& limits) : scheme_(scheme) {
+        nodes_.emplace_back();
+        nodes_[0].at = {0, 0, 1};
+        build(0, ring, 0, limits);
+    }
+
+    Domain domain() const override { return triangle() ? Domain::triangle : Domain::quad; }
+    Rect rect() const override { return {}; }
+    std::vector<double> breaks_u() const override { return {}; }
+    std::vector<double> breaks_v() const override { return {}; }
+    Point point(double u, double v) const override { return value(run<0>(u, v)); }
+    PointJet jet(double u, double v) const override { return run<2>(u, v); }
+    PointFrame frame(double u, double v) const override { return run<1>(u, v); }
+    void points(std::size_t n, const double* u, const double* v, Point* out) const override {
+        for (std::size_t k = 0; k < n; ++k) out[k] = point(u[k], v[k]);
+    }
+    void frames(std::size_t n, const double* u, const double* v, PointFrame* out) const override {
+        for (std::size_t k = 0; k < n; ++k) out[k] = frame(u[k], v[k]);
+    }
+    void frame_arrays(Isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const override {
+        for (std::size_t k = 0; k < u.size(); ++k) {
+            const PointFrame f = frame(u[k], v.size() == 1 ? v[0] : v[k]);
+            for (int axis = 0; axis < 3; ++axis) out.position[axis][k] = f[axis].c[0], out.du[axis][k] = f[axis].c[1], out.dv[axis][k] = f[axis].c[2];
+        }
+    }
+    std::optional<Point> singular_normal(double u, double v) const override {
+        const Node& n = leaf(u, v);
+        return n.core < 0 ? std::nullopt : cores_[n.core].normal;
+    }
+
+    // Second derivatives are continuous but at cores, so those of all cells that the box meets bound their change, though third ones jump.
+    Enclosure enclose(const Box& box) const override {
+        Enclosure e;
+        e.u = mid(box.u), e.v = mid(box.v);
+        bool first = true, whole = true;
+        visit(0, box, [&](const Node& n) {
+            if (n.core >= 0) whole = false;
+            if (n.cell < 0 || !whole) return whole;
+            const Box part = clipped(box, n.at);
+            for (int axis = 0; axis < 3; ++axis) {
+                JetUV<Interval, 3> over;
+                const Cell& c = cells_[n.cell];
+                c.exact[axis].template jets<3>(c.u, c.v, part.u, part.v, nullptr, &over);
+                for (int k = 0; k < over.size; ++k) e.over[axis].c[k] = first ? over.c[k] : isoparm::hull(e.over[axis].c[k], over.c[k]);
+            }
+            first = false;
+            return true;
+        });
+        if (!whole || first) {
+            const Box3 positions = enclose_points(box), at = enclose_points({e.u, e.v});
+            for (int axis = 0; axis < 3; ++axis) {
+                std::fill(std::begin(e.over[axis].c), std::end(e.over[axis].c), Interval::all());
+                std::fill(std::begin(e.centre[axis].c), std::end(e.centre[axis].c), Interval::all());
+                e.over[axis].c[0] = positions[axis], e.centre[axis].c[0] = at[axis];
+            }
+            return e;
+        }
+        const Cell& c = cells_[leaf(e.u, e.v).cell];
+        for (int axis = 0; axis < 3; ++axis) c.exact[axis].template jets<0>(c.u, c.v, e.u, e.v, &e.centre[axis], nullptr);
+        return e;
+    }
+    Vec3<Interval> enclose_points(const Box& box) const override {
+        Box3 all;
+        bool first = true;
+        const auto add = [&](const Box3& b) {
+            all = first ? b : hull(all, b);
+            first = false;
+        };
+        visit(0, box, [&](const Node& n) {
+            const Interval u = n.at.across_u(), v = n.at.across_v();
+            const bool inside = u.lo >= box.u.lo && u.hi <= box.u.hi && v.lo >= box.v.lo && v.hi <= box.v.hi;
+            if (n.core >= 0 && box.u.lo == box.u.hi && box.v.lo == box.v.hi && box.u.lo == cores_[n.core].u && box.v.lo == cores_[n.core].v) add(cores_[n.core].vertex);
+            else if (inside || n.core >= 0) add(n.hull);
+            else if (n.cell >= 0) add(positions(cells_[n.cell], clipped(box, n.at)));
+            return !inside;
+        });
+        return all;
+    }
+
+private:
+    struct Node {
+        Place at{};
+        int children = -1, cell = -1, core = -1;  // the first of four, or what it is
+        Box3 hull;
+    };
+    bool triangle() const { return scheme_ == Scheme::loop; }
+
+    static Box3 positions(const Cell& c, const Box& box) {
+        Box3 b;
+        for (int axis = 0; axis < 3; ++axis) {
+            JetUV<Interval, 0> x;
+            c.exact[axis].template jets<0>(c.u, c.v, box.u, box.v, nullptr, &x);
+            b[axis] = x.c[0];
+        }
+        return b;
+    }
+    static Box clipped(const Box& box, const Place& at) { return {clip(box.u, at.across_u()), clip(box.v, at.across_v())}; }
+
+    void build(int node, const Ring<Interval>& ring, int depth, FaceLimits& limits) {
+        const Subdivider<Interval> s(ring, scheme_);
+        const Place at = nodes_[node].at;
+        const auto count = [&] {
+            if (++limits.pieces > limits.most_pieces)
+                throw Error(ErrorKind::budget, "the limit surface consists of more than " + std::to_string(limits.most_pieces) +
+                                                   " pieces; give semi-sharp creases less sharpness, or 10 for infinite, or split the cage");
+        };
+        if (const auto control = s.regular()) {
+            count();
+            nodes_[node].cell = static_cast<int>(cells_.size());
+            cells_.push_back(triangle() ? quartic(*control, at) : bicubic(*control, at));
+            nodes_[node].hull = positions(cells_.back(), {at.across_u(), at.across_v()});
+            return;
+        }
+        const Box3 all = hull_of(ring);
+        if (depth == kDeepest || (depth >= kAllSmooth && size_of(all) <= limits.core)) {
+            count();
+            nodes_[node].core = static_cast<int>(cores_.size());
+            nodes_[node].hull = all;
+            int k = 0;  // the extraordinary corner
+            while (k + 1 < static_cast<int>(ring.faces[0].size()) && s.regular_at(k)) ++k;
+            cores_.push_back({k == 1 || (k == 2 && !triangle()) ? at.u + at.h : at.u, k >= 2 ? at.v + at.h : at.v, limit_position(ring, k, scheme_), limit_normal(ring, k, scheme_)});
+            return;
+        }
+        const int first = static_cast<int>(nodes_.size());
+        nodes_.resize(first + 4);
+        nodes_[node].children = first;
+        for (int k = 0; k < 4; ++k) {
+            nodes_[first + k].at = at.child(k, triangle());
+            build(first + k, s.child(k), depth + 1, limits);
+            nodes_[node].hull = k == 0 ? nodes_[first].hull : hull(nodes_[node].hull, nodes_[first + k].hull);
+        }
+    }
+
+    const Node& leaf(double u, double v) const {
+        const Node* n = &nodes_[0];
+        while (n->children >= 0) {
+            const double s = (u - n->at.u) / n->at.h, t = (v - n->at.v) / n->at.h;
+            const int k = triangle() ? (s >= 0.5 ? 1 : t >= 0.5 ? 2 : s + t <= 0.5 ? 0 : 3) : s >= 0.5 ? (t >= 0.5 ? 2 : 1) : t >= 0.5 ? 3 : 0;
+            n = &nodes_[n->children + k];
+        }
+        return *n;
+    }
+
+    /// Calls f for every node that the box meets (more than in an edge, where the box has an inside), children only where f says so.
+    template <class F> void visit(int node, const Box& box, const F& f) const {
+        const Node& n = nodes_[node];
+        if (!meets(box, n.at) || !f(n) || n.children < 0) return;
+        for (int k = 0; k < 4; ++k) visit(n.children + k, box, f);
+    }
+    bool meets(const Box& box, const Place& at) const {
+        const auto overlap = [](const Interval& x, const Interval& y) {
+            return x.lo == x.hi ? x.lo >= y.lo && (x.lo < y.hi || (x.lo == 1 && y.hi == 1)) : x.lo < y.hi && x.hi > y.lo;
+        };
+        if (!triangle()) return overlap(box.u, at.across_u()) && overlap(box.v, at.across_v());
+        // Closed here: lines of three directions bound the triangles.
+        const auto touch = [](const Interval& x, const Interval& y) { return x.lo <= y.hi && x.hi >= y.lo; };
+        const bool flat = box.u.lo == box.u.hi || box.v.lo == box.v.hi;
+        const Interval u = at.across_u(), v = at.across_v();
+        if (flat ? !touch(box.u, u) || !touch(box.v, v) : !overlap(box.u, u) || !overlap(box.v, v)) return false;
+        const double line = at.u + at.v + at.h, low = box.u.lo + box.v.lo, high = box.u.hi + box.v.hi;  // sums of dyadic numbers; 1e-15 is for the box's
+        return at.h > 0 ? low <= line + 1e-15 : high >= line - 1e-15;
+    }
+
+    template <int N> Vec3<JetUV<double, N>> run(double u, double v) const {
+        const Node& n = leaf(u, v);
+        Vec3<JetUV<double, N>> x;
+        if (n.core >= 0) {
+            const Point p = middle(cores_[n.core].vertex);
+            for (int axis = 0; axis < 3; ++axis) {
+                std::fill(std::begin(x[axis].c), std::end(x[axis].c), kNaN);
+                x[axis].c[0] = p[axis];
+            }
+            return x;
+        }
+        const Cell& cell = cells_[n.cell];
+        const double dx = u - cell.u, dy = v - cell.v;
+        const int d = cell.degree;
+        for (int axis = 0; axis < 3; ++axis) {
+            double rows[5][N + 1];  // Taylor coefficients along v of each row
+            for (int i = 0; i <= d; ++i) taylor<N>(d, [&](int j) { return cell.c[(d + 1) * i + j][axis]; }, dy, rows[i]);
+            for (int j = 0; j <= N; ++j) {
+                double column[N + 1];
+                taylor<N>(d, [&](int i) { return rows[i][j]; }, dx, column);
+                for (int i = 0; i + j <= N; ++i) x[axis].c[JetUV<double, N>::index(i, j)] = column[i];
+            }
+        }
+        return x;
+    }
+    /// By Horner's rule, out[k] = sum binomial(i,k) c(i) t^(i-k).
+    template <int N, class C> static void taylor(int degree, C c, double t, double* out) {
+        std::fill(out, out + N + 1, 0.0);
+        for (int i = degree; i >= 0; --i) {
+            for (int k = N; k > 0; --k) out[k] = out[k] * t + out[k - 1];
+            out[0] = out[0] * t + c(i);
+        }
+    }
+    static Point value(const Vec3<JetUV<double, 0>>& p) { return {p.x.c[0], p.y.c[0], p.z.c[0]}; }
+
+    Scheme scheme_;
+    std::vector<Node> nodes_;
+    std::vector<Cell> cells_;
+    std::vector<Core> cores_;
+};
+
+}  // namespace
+
+Patch make_subdivision_face(const Ring<Interval>& ring, Scheme scheme, FaceLimits& limits) {
+    return Patch(std::make_shared<SubdivisionFace>(ring, scheme, limits));
+}
+
+std::vector<Point> bezier_points(const std::vector<Vec3<Interval>>& control, Scheme scheme) {
+    // The Bezier points of a polynomial are its blossoms; of a cubic spline segment: 6 times the weights of its control points.
+    static constexpr double cubic[4][4] = {{1, 4, 1, 0}, {0, 4, 2, 0}, {0, 2, 4, 0}, {0, 1, 4, 1}};
+    std::vector<Point> result;
+    if (scheme != Scheme::loop) {
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) {
+                Vec3<Interval> sum;
+                for (int k = 0; k < 4; ++k)
+                    for (int l = 0; l < 4; ++l) sum = sum + Interval(cubic[i][k] * cubic[j][l]) * control[4 * k + l];
+                result.push_back(middle(sum / Interval(36)));
+            }
+        return result;
+    }
+    // A homogeneous form in u, v, w is its own Bernstein form, but for the multinomial coefficients; b_ijk belongs to weights that the patch calls w (corner 0), u, v.
+    const auto variable = [](int k) { return Form({{{k == 0, k == 1, k == 2}, 1.0}}); };
+    const auto basis = box_splines<Form>(variable(0), variable(1), variable(2));
+    for (int k = 0; k <= 4; ++k)
+        for (int j = 0; j + k <= 4; ++j) {
+            const int i = 4 - j - k;
+            Vec3<Interval> sum;
+            for (int b = 0; b < 12; ++b)
+                if (const auto term = basis[b].c.find({k, i, j}); term != basis[b].c.end()) sum = sum + Interval(term->second) * control[b];
+            result.push_back(middle(sum / Interval(12 * binomial(4, i) * binomial(4 - i, j))));
+        }
+    return result;
+}
+
+}  // namespace isoparm
