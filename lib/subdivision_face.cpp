@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "error.h"
 
@@ -114,15 +115,21 @@ Cell bicubic(const Controls& p, const Place& at) {
 }
 
 Cell quartic(const Controls& p, const Place& at) {
-    const Polynomial x = Polynomial::variable_u(at.across_u()), y = Polynomial::variable_v(at.across_v());
-    Cell cell{mid(at.across_u()), mid(at.across_v()), {}, 4, {}};
-    const Interval scale(1 / at.h);
-    const Polynomial v = (x - Polynomial(at.u)) * Polynomial(scale), w = (y - Polynomial(at.v)) * Polynomial(scale), u = Polynomial(1) - v - w;
-    const auto basis = box_splines<Polynomial>(u, v, w);
+    static const auto basis = [] {  // in the triangle's own parameters
+        const Polynomial v = Polynomial::variable_u({0, 1}), w = Polynomial::variable_v({0, 1});
+        return box_splines<Polynomial>(Polynomial(1) - v - w, v, w);
+    }();
+    const Polynomial x = Polynomial::variable_u(at.across_u()), y = Polynomial::variable_v(at.across_v()), all = square(square(x)) * square(square(y));
+    Cell cell{at.u + at.h / 2, at.v + at.h / 2, {}, 4, {}};
     for (int axis = 0; axis < 3; ++axis) {
-        Polynomial sum(0);
-        for (int k = 0; k < 12; ++k) sum = sum + basis[k] * Polynomial(p[k][axis] / Interval(12));
-        cell.exact[axis] = sum;
+        Polynomial& f = cell.exact[axis] = all;
+        for (int i = 0; i <= 4; ++i)
+            for (int j = 0; j <= 4; ++j) {
+                Interval sum(0);
+                for (int k = 0; k < 12 && i + j <= 4; ++k)
+                    if (i <= basis[k].degree_u() && j <= basis[k].degree_v()) sum += basis[k].coefficient(i, j) * p[k][axis];
+                f.coefficient(i, j) = sum / Interval(12) * Interval(std::pow(at.h, -i - j));
+            }
     }
     cell.keep_middles();
     return cell;
@@ -130,6 +137,7 @@ Cell quartic(const Controls& p, const Place& at) {
 
 /// What is left around a vertex.
 struct Core {
+    int node;
     double u, v;     // of the vertex
     Box3 vertex;     // its limit position
     std::optional<Point> normal;
@@ -209,21 +217,7 @@ public:
     Enclosure enclose(const Box& box) const override {
         Enclosure e;
         e.u = mid(box.u), e.v = mid(box.v);
-        bool first = true, whole = true;
-        visit(0, box, [&](const Node& n) {
-            if (n.core >= 0) whole = false;
-            if (n.cell < 0 || !whole) return whole;
-            const Box part = clipped(box, n.at);
-            for (int axis = 0; axis < 3; ++axis) {
-                JetUV<Interval, 3> over;
-                const Cell& c = cells_[n.cell];
-                c.exact[axis].template jets<3>(c.u, c.v, part.u, part.v, nullptr, &over);
-                for (int k = 0; k < over.size; ++k) e.over[axis].c[k] = first ? over.c[k] : isoparm::hull(e.over[axis].c[k], over.c[k]);
-            }
-            first = false;
-            return true;
-        });
-        if (!whole || first) {
+        if (std::any_of(cores_.begin(), cores_.end(), [&](const Core& c) { return meets(box, nodes_[c.node].at); })) {
             const Box3 positions = enclose_points(box), at = enclose_points({e.u, e.v});
             for (int axis = 0; axis < 3; ++axis) {
                 std::fill(std::begin(e.over[axis].c), std::end(e.over[axis].c), Interval::all());
@@ -232,6 +226,12 @@ public:
             }
             return e;
         }
+        bool first = true;
+        visit(0, box, [&](const Node& n) {
+            if (n.over >= 0 && inside(n.at, box)) return add(e.over, overs_[n.over], first), false;
+            if (n.cell >= 0) add(e.over, derivatives(cells_[n.cell], clipped(box, n.at)), first);
+            return true;
+        });
         const Cell& c = cells_[leaf(e.u, e.v).cell];
         for (int axis = 0; axis < 3; ++axis) c.exact[axis].template jets<0>(c.u, c.v, e.u, e.v, &e.centre[axis], nullptr);
         return e;
@@ -244,12 +244,11 @@ public:
             first = false;
         };
         visit(0, box, [&](const Node& n) {
-            const Interval u = n.at.across_u(), v = n.at.across_v();
-            const bool inside = u.lo >= box.u.lo && u.hi <= box.u.hi && v.lo >= box.v.lo && v.hi <= box.v.hi;
+            const bool whole = inside(n.at, box);
             if (n.core >= 0 && box.u.lo == box.u.hi && box.v.lo == box.v.hi && box.u.lo == cores_[n.core].u && box.v.lo == cores_[n.core].v) add(cores_[n.core].vertex);
-            else if (inside || n.core >= 0) add(n.hull);
+            else if (whole || n.core >= 0) add(n.hull);
             else if (n.cell >= 0) add(positions(cells_[n.cell], clipped(box, n.at)));
-            return !inside;
+            return !whole;
         });
         return all;
     }
@@ -258,6 +257,7 @@ private:
     struct Node {
         Place at{};
         int children = -1, cell = -1, core = -1;  // the first of four, or what it is
+        int over = -1;                            // where there is no core inside
         Box3 hull;
     };
     bool triangle() const { return scheme_ == Scheme::loop; }
@@ -270,6 +270,22 @@ private:
             b[axis] = x.c[0];
         }
         return b;
+    }
+    using Derivatives = Vec3<JetUV<Interval, 3>>;
+    static Derivatives derivatives(const Cell& c, const Box& box) {
+        Derivatives d;
+        for (int axis = 0; axis < 3; ++axis) c.exact[axis].template jets<3>(c.u, c.v, box.u, box.v, nullptr, &d[axis]);
+        return d;
+    }
+    static void add(Derivatives& all, const Derivatives& more, bool& first) {
+        if (std::exchange(first, false)) all = more;
+        else
+            for (int axis = 0; axis < 3; ++axis)
+                for (int k = 0; k < all.x.size; ++k) all[axis].c[k] = isoparm::hull(all[axis].c[k], more[axis].c[k]);
+    }
+    static bool inside(const Place& at, const Box& box) {
+        const Interval u = at.across_u(), v = at.across_v();
+        return u.lo >= box.u.lo && u.hi <= box.u.hi && v.lo >= box.v.lo && v.hi <= box.v.hi;
     }
     static Box clipped(const Box& box, const Place& at) { return {clip(box.u, at.across_u()), clip(box.v, at.across_v())}; }
 
@@ -286,6 +302,8 @@ private:
             nodes_[node].cell = static_cast<int>(cells_.size());
             cells_.push_back(triangle() ? quartic(*control, at) : bicubic(*control, at));
             nodes_[node].hull = positions(cells_.back(), {at.across_u(), at.across_v()});
+            nodes_[node].over = static_cast<int>(overs_.size());
+            overs_.push_back(derivatives(cells_.back(), {at.across_u(), at.across_v()}));
             return;
         }
         const Box3 all = hull_of(ring);
@@ -295,7 +313,7 @@ private:
             nodes_[node].hull = all;
             int k = 0;  // the extraordinary corner
             while (k + 1 < static_cast<int>(ring.faces[0].size()) && s.regular_at(k)) ++k;
-            cores_.push_back({k == 1 || (k == 2 && !triangle()) ? at.u + at.h : at.u, k >= 2 ? at.v + at.h : at.v, limit_position(ring, k, scheme_), limit_normal(ring, k, scheme_)});
+            cores_.push_back({node, k == 1 || (k == 2 && !triangle()) ? at.u + at.h : at.u, k >= 2 ? at.v + at.h : at.v, limit_position(ring, k, scheme_), limit_normal(ring, k, scheme_)});
             return;
         }
         const int first = static_cast<int>(nodes_.size());
@@ -306,6 +324,12 @@ private:
             build(first + k, s.child(k), depth + 1, limits);
             nodes_[node].hull = k == 0 ? nodes_[first].hull : hull(nodes_[node].hull, nodes_[first + k].hull);
         }
+        if (std::any_of(nodes_.begin() + first, nodes_.begin() + first + 4, [](const Node& n) { return n.over < 0; })) return;
+        Derivatives together;
+        bool none = true;
+        for (int k = 0; k < 4; ++k) add(together, overs_[nodes_[first + k].over], none);
+        nodes_[node].over = static_cast<int>(overs_.size());
+        overs_.push_back(together);
     }
 
     const Node& leaf(double u, double v) const {
@@ -377,6 +401,7 @@ private:
     std::vector<Node> nodes_;
     std::vector<Cell> cells_;
     std::vector<Core> cores_;
+    std::vector<Derivatives> overs_;
 };
 
 }  // namespace

@@ -66,7 +66,7 @@ template <class T> const typename Subdivider<T>::Edge& Subdivider<T>::other_edge
 
 template <class T> Vec3<T> Subdivider<T>::edge_point(const Edge& e) const {
     const Vec3<T> ends = ring_.points[e.a] + ring_.points[e.b], middle = T(0.5) * ends;
-    if (e.sharpness >= 1) return middle;
+    if (e.sharpness >= 1 || scheme_ == Scheme::bilinear) return middle;
     Vec3<T> smooth;
     if (scheme_ == Scheme::loop) {
         smooth = T(0.375) * ends;
@@ -99,6 +99,7 @@ template <class T> Vec3<T> Subdivider<T>::vertex_point(int k, float& sharpness) 
     const Vec3<T>& p = ring_.points[v];
     const float s = ring_.sharpness[v];
     sharpness = finer(s);
+    if (scheme_ == Scheme::bilinear) return p;
     // Sharp edges before and after this step, and how sharp what ceases to be was.
     std::vector<int> before, after;
     float decayed = 0, sum = 0;
