@@ -65,7 +65,7 @@ private:
 struct LimitSample {
     int face, corner;  // -1: the whole face
     double u, v;
-    Point p;
+    Point p, normal;  // unit, by OpenSubdiv's tangents
     bool exact;  // OpenSubdiv's mask is that of the limit: not so at the end of a crease, at valence 2, and where something semi-sharp is left
 };
 /// Throws as LimitSurface does.

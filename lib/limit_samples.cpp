@@ -91,15 +91,15 @@ std::vector<LimitSample> limit_samples(const Cage& cage, Scheme scheme, int leve
         places = refined(places, coarse, fine, loop);
     }
     const auto& last = refiner->GetLevel(levels);
-    std::vector<Primvar> limit(last.GetNumVertices());
-    primvars.Limit(points, limit);
+    std::vector<Primvar> limit(last.GetNumVertices()), along = limit, across = limit;
+    primvars.Limit(points, limit, along, across);
     std::vector<LimitSample> samples;
     for (int f = 0; f < last.GetNumFaces(); ++f) {
         if (last.IsFaceHole(f)) continue;
         const auto vertices = last.GetFaceVertices(f);
         for (int k = 0; k < vertices.size(); ++k) {
             const int v = vertices[k];
-            samples.push_back({places[f].face, places[f].corner, places[f].uv[k].x, places[f].uv[k].y, limit[v].p, scheme == Scheme::bilinear || mask_is_exact(last, v)});
+            samples.push_back({places[f].face, places[f].corner, places[f].uv[k].x, places[f].uv[k].y, limit[v].p, normalized(cross(along[v].p, across[v].p)), scheme == Scheme::bilinear || mask_is_exact(last, v)});
         }
     }
     return samples;

@@ -80,6 +80,9 @@ struct Cell {
     }
 };
 
+/// h to a power; h is a power of two, or minus one, so this is exact.
+double power(double h, int n) { return std::ldexp(h < 0 && n % 2 ? -1.0 : 1.0, n * std::ilogb(h)); }
+
 /// A square or triangle with the corner (u,v) and the sides h along u and v (below 0: turned by half).
 struct Place {
     double u, v, h;
@@ -107,7 +110,7 @@ Cell bicubic(const Controls& p, const Place& at) {
             for (int j = 0; j < 4; ++j) {
                 Interval sum(0);
                 for (int l = 0; l < 4; ++l) sum += Interval(kSpline[j][l]) * rows[i][l];
-                f.coefficient(i, j) = sum / Interval(2304) * Interval(std::pow(at.h, -i - j));  // powers of two
+                f.coefficient(i, j) = sum / Interval(2304) * Interval(power(at.h, -i - j));
             }
     }
     cell.keep_middles();
@@ -128,7 +131,7 @@ Cell quartic(const Controls& p, const Place& at) {
                 Interval sum(0);
                 for (int k = 0; k < 12 && i + j <= 4; ++k)
                     if (i <= basis[k].degree_u() && j <= basis[k].degree_v()) sum += basis[k].coefficient(i, j) * p[k][axis];
-                f.coefficient(i, j) = sum / Interval(12) * Interval(std::pow(at.h, -i - j));
+                f.coefficient(i, j) = sum / Interval(12) * Interval(power(at.h, -i - j));
             }
     }
     cell.keep_middles();
@@ -187,6 +190,10 @@ public:
         nodes_.emplace_back();
         nodes_[0].at = {0, 0, 1};
         build(0, ring, 0, limits);
+        for (Core& c : cores_) {  // from the whole face: rings as small as cores have lost their digits
+            const int k = c.u == 0 ? (c.v == 0 ? 0 : triangle() ? 2 : 3) : c.v == 0 ? 1 : 2;
+            if ((c.u == 0 || c.u == 1) && (c.v == 0 || c.v == 1)) c.normal = limit_normal(ring, k, scheme);
+        }
     }
 
     Domain domain() const override { return triangle() ? Domain::triangle : Domain::quad; }
@@ -313,7 +320,7 @@ private:
             nodes_[node].hull = all;
             int k = 0;  // the extraordinary corner
             while (k + 1 < static_cast<int>(ring.faces[0].size()) && s.regular_at(k)) ++k;
-            cores_.push_back({node, k == 1 || (k == 2 && !triangle()) ? at.u + at.h : at.u, k >= 2 ? at.v + at.h : at.v, limit_position(ring, k, scheme_), limit_normal(ring, k, scheme_)});
+            cores_.push_back({node, k == 1 || (k == 2 && !triangle()) ? at.u + at.h : at.u, k >= 2 ? at.v + at.h : at.v, limit_position(ring, k, scheme_), {}});
             return;
         }
         const int first = static_cast<int>(nodes_.size());

@@ -35,7 +35,7 @@ Cage inline_cage(const Json& j, const SceneValues& values) {
     Cage cage;
     cage.positions = values.points(j.at("vertices", "the vertices [x, y, z] of the cage"), 3);
     const int last = static_cast<int>(cage.positions.size()) - 1;
-    const auto vertex = [&](const Json& v) { return values.integer(v, 0, last, "a vertex, 0 to " + std::to_string(last)); };
+    const auto vertex = [&](const Json& v) { return values.integer(v, 0, last, "a vertex"); };
     std::set<std::pair<int, int>> edges;
     for (const Json& f : values.list(j.at("faces", "the faces of the cage, lists of vertices counted from 0"), 1, 0, "faces")) {
         std::vector<int> corners;
@@ -83,21 +83,17 @@ BuiltSurface build_subdivision(const Json& j, SceneBuilder& scene) {
         for (const auto& key : inline_keys)
             if (const auto extra = j.find(key)) extra->fail_at_key("found " + quoted(key) + " beside a cage in a file, expected one or the other");
     if (file && file->is(Json::Kind::object)) file->allow_keys(inline_keys);
+    if (!file && !j.find("vertices")) j.at("cage", "the cage, an .obj file or {\"vertices\", \"faces\", \"creases\", \"corners\"}, or these keys here");
     Cage cage = !file ? inline_cage(j, scene.values()) : file->is(Json::Kind::object) ? inline_cage(*file, scene.values()) : read_cage(*file, scene.values());
     const auto scheme_key = j.find("scheme");
     const auto scheme = scheme_key ? static_cast<Scheme>(scene.values().word(*scheme_key, {"catmull-clark", "loop", "bilinear"})) : Scheme::catmull_clark;
     if (const auto boundary = j.find("boundary"))
         cage.boundary = scene.values().word(*boundary, {"edge_and_corner", "edge_only"}) == 0 ? Cage::Boundary::edge_and_corner : Cage::Boundary::edge_only;
-    try {
-        SubdivisionSurface s = make_subdivision(cage, scheme);
-        BuiltSurface built(std::move(s.patches), net_of(cage));
-        built.detail = std::to_string(s.regular) + " regular and " + std::to_string(s.irregular) + " irregular faces" +
-                       (s.without_limit > 0 ? ", " + std::to_string(s.without_limit) + " without a limit" : "");
-        return built;
-    } catch (const Error& e) {
-        if (e.kind() != ErrorKind::input) throw;
-        (file ? *file : j).fail("found a cage that cannot be used, expected another one: " + std::string(e.what()));
-    }
+    SubdivisionSurface s = make_subdivision(cage, scheme);
+    BuiltSurface built(std::move(s.patches), net_of(cage));
+    built.detail = std::to_string(s.regular) + " regular and " + std::to_string(s.irregular) + " irregular faces" +
+                   (s.without_limit > 0 ? ", " + std::to_string(s.without_limit) + " without a limit" : "");
+    return built;
 }
 
 }  // namespace isoparm

@@ -10,7 +10,6 @@
 
 namespace isoparm {
 
-/// build: null for a type that the format knows and this version does not build yet.
 template <class Built> struct SceneType {
     const char* name;
     std::vector<std::string> keys;  // besides "type"

@@ -39,16 +39,21 @@ void compare(const Cage& cage, Scheme scheme, int levels, const Evaluate& f) {
 
 TEST(Subdivision, EqualsTheLimitOfOpenSubdivsMasksAtAllRefinedVertices) {
     for (const NamedCage& c : all_cages()) {
-        double worst = 0, enclosed = 0;
-        std::size_t count = 0;
+        double worst = 0, enclosed = 0, turned = 0;
+        std::size_t count = 0, corners = 0;
         compare(c.cage, c.scheme, 4, [&](const Patch& patch, const LimitSample& s) {
             if (!s.exact) return;
             worst = std::max(worst, distance(patch.point(s.u, s.v), s.p)), ++count;
             enclosed = std::max(enclosed, slack_of(patch, {s.u, s.v}, s.p));
+            const auto x = evaluate(patch, s.u, s.v);
+            if (x.du || !x.normal || !finite(s.normal)) return;
+            turned = std::max(turned, std::min(length(*x.normal - s.normal), length(*x.normal + s.normal))), ++corners;
         });
         EXPECT_GT(count, 100u) << c.name;
         EXPECT_LT(worst, 2e-14) << c.name;
         EXPECT_LT(enclosed, 4e-12) << c.name;
+        EXPECT_LT(turned, 1e-13) << c.name << ": normals at " << corners << " extraordinary corners";
+        if (c.name == "cube") EXPECT_EQ(corners, 24u);
     }
 }
 
