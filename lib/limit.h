@@ -65,7 +65,8 @@ private:
 struct LimitSample {
     int face, corner;  // -1: the whole face
     double u, v;
-    Point p, normal;  // unit, by OpenSubdiv's tangents
+    Point p, normal;  // unit, by OpenSubdiv's tangents; NaN at creases and sharp corners, which have several, and where these are not the
+                      // limit's: on boundaries of Catmull-Clark cages but for two faces at the vertex
     bool exact;  // OpenSubdiv's mask is that of the limit: not so at the end of a crease, at valence 2, and where something semi-sharp is left
 };
 /// Throws as LimitSurface does.

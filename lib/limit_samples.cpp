@@ -1,6 +1,6 @@
 #include <opensubdiv/far/primvarRefiner.h>
 
-#include <array>
+#include <cmath>
 
 #include "limit_refiner.h"
 
@@ -62,7 +62,15 @@ bool mask_is_exact(const Far::TopologyLevel& level, int v) {
         if (level.IsEdgeSemiSharp(e)) return false;
         sharp += level.IsEdgeInfSharp(e) || level.IsEdgeBoundary(e);
     }
-    return !level.IsVertexSemiSharp(v) && (sharp >= 2 || (sharp == 0 && level.GetVertexFaces(v).size() > 2));
+    return !level.IsVertexSemiSharp(v) && (sharp >= 2 || (sharp == 0 && level.GetVertexFaces(v).size() != 2));
+}
+
+/// Several at creases; on boundaries the masks are of the modified rules of Biermann, Levin and Zorin 2000, and those of Catmull and Clark with two faces only.
+bool has_normal(const Far::TopologyLevel& level, int v, bool loop) {
+    if (level.IsVertexInfSharp(v) || (!loop && level.IsVertexBoundary(v) && level.GetVertexFaces(v).size() != 2)) return false;
+    for (const int e : level.GetVertexEdges(v))
+        if (level.GetEdgeSharpness(e) > 0 && !level.IsEdgeBoundary(e)) return false;
+    return true;
 }
 
 }  // namespace
@@ -99,7 +107,7 @@ std::vector<LimitSample> limit_samples(const Cage& cage, Scheme scheme, int leve
         const auto vertices = last.GetFaceVertices(f);
         for (int k = 0; k < vertices.size(); ++k) {
             const int v = vertices[k];
-            samples.push_back({places[f].face, places[f].corner, places[f].uv[k].x, places[f].uv[k].y, limit[v].p, normalized(cross(along[v].p, across[v].p)), scheme == Scheme::bilinear || mask_is_exact(last, v)});
+            samples.push_back({places[f].face, places[f].corner, places[f].uv[k].x, places[f].uv[k].y, limit[v].p, has_normal(last, v, loop) ? normalized(cross(along[v].p, across[v].p)) : Point(NAN, NAN, NAN), scheme == Scheme::bilinear || mask_is_exact(last, v)});
         }
     }
     return samples;

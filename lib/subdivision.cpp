@@ -15,7 +15,6 @@ namespace isoparm {
 namespace {
 
 constexpr double kCore = 1e-9;                // of the cage's diagonal
-constexpr std::size_t kMostPieces = 1'000'000;  // about 1.3 GB
 constexpr std::size_t kMostFaces = 500;       // around a vertex: work grows with its square
 
 /// Who meets whom in a cage.
@@ -168,7 +167,7 @@ std::vector<Patch> patches_of(const Ring<Interval>& ring, Scheme scheme, FaceLim
 
 }  // namespace
 
-SubdivisionSurface make_subdivision(const Cage& cage, Scheme scheme) {
+SubdivisionSurface make_subdivision(const Cage& cage, Scheme scheme, std::size_t most_pieces) {
     check_cage(cage, scheme);
     const Neighbours neighbours(cage);
     const std::size_t faces = cage.faces.size();
@@ -177,7 +176,7 @@ SubdivisionSurface make_subdivision(const Cage& cage, Scheme scheme) {
     if (cage.boundary == Cage::Boundary::none)
         for (std::size_t f = 0; f < faces; ++f) hole[f] |= neighbours.at_boundary(static_cast<int>(f));
     FaceLimits limits;
-    limits.core = kCore * diagonal(cage), limits.most_pieces = kMostPieces;
+    limits.core = kCore * diagonal(cage), limits.most_pieces = most_pieces;
     std::vector<std::vector<Patch>> patches(faces);
     tbb::parallel_for(std::size_t(0), faces, [&](std::size_t f) {
         if (hole[f]) return;

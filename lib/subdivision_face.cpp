@@ -158,28 +158,32 @@ Box3 limit_position(Ring<Interval> ring, int k, Scheme scheme) {
     return all;
 }
 
-/// The limit of the normals of the sub-faces at corner k: moved so that this corner stays at 0 and scaled, their rings converge to an affine image of the
-/// characteristic map.
+/// The limit of the normals of the sub-faces at corner k. Linear maps commute with subdivision: after each step one moves the corner to 0 and makes the
+/// sub-face's two diagonals, or median and side, the axes x and y, so that neither of them loses its digits to the other; the last row of the product of these maps tends
+/// to the normal.
 std::optional<Point> limit_normal(const Ring<Interval>& exact, int k, Scheme scheme) {
     Ring<double> ring;
     for (const auto& p : exact.points) ring.points.push_back(middle(p));
     ring.sharpness = exact.sharpness, ring.faces = exact.faces;
     for (const auto& c : exact.creases) ring.creases.push_back({c.a, c.b, c.sharpness});
+    std::array<Point, 3> rows{Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
     std::optional<Point> last;
     for (int step = 0; step < kLimitSteps; ++step) {
-        const auto& f = ring.faces[0];
-        const Point origin = ring.points[f[k]];
-        double size = 0;
-        for (Point& p : ring.points) p = p - origin, size = std::max(size, length(p));
-        if (!(size > 0) || !std::isfinite(size)) return {};
-        for (Point& p : ring.points) p = p / size;
-        Point area{0, 0, 0};
-        for (std::size_t i = 0; i < f.size(); ++i) area += cross(ring.points[f[i]], ring.points[f[(i + 1) % f.size()]]);
-        const Point n = normalized(area);
-        if (!finite(n)) return {};
-        if (last && length(n - *last) < 4e-16) return n;
-        last = n;
         ring = Subdivider<double>(ring, scheme).child(k);
+        const auto& f = ring.faces[0];
+        const int n = static_cast<int>(f.size());
+        const Point origin = ring.points[f[k]], a = ring.points[f[(k + 1) % n]] - origin, b = ring.points[f[(k + n - 1) % n]] - origin;
+        const Point x = a - b, y = n == 4 ? ring.points[f[(k + 2) % n]] - origin : 0.5 * (a + b), z = normalized(cross(x, y));
+        // The inverse of the matrix of the columns x, y, z: its rows.
+        const double det = dot(cross(x, y), z);
+        std::array<Point, 3> map{cross(y, z) / det, cross(z, x) / det, z};
+        const auto image = [&](const Point& row) { return row.x * rows[0] + row.y * rows[1] + row.z * rows[2]; };
+        map[2] = map[2] / length(image(z));
+        for (Point& p : ring.points) p = {dot(map[0], p - origin), dot(map[1], p - origin), dot(map[2], p - origin)};
+        rows = {image(map[0]), image(map[1]), image(map[2])};
+        if (!finite(rows[0]) || !finite(rows[1]) || !finite(rows[2])) return {};
+        if (last && length(rows[2] - *last) < 4e-16) break;
+        last = rows[2];
     }
     return last;
 }
