@@ -25,10 +25,13 @@ public:
             const auto& c = cage.faces[f];
             for (std::size_t k = 0; k < c.size(); ++k) {
                 faces_[c[k]].push_back(f);
-                auto& edge = edges_[std::minmax(c[k], c[(k + 1) % c.size()])];
-                if (++edge.faces > 2)
-                    throw_input(face_name(cage, f) + ": the edge from vertex " + std::to_string(c[k]) + " to " + std::to_string(c[(k + 1) % c.size()]) +
-                                " is not manifold: found a third face there, expected at most two; split the cage along it");
+                const int a = c[k], b = c[(k + 1) % c.size()];
+                Edge& edge = edges_[std::minmax(a, b)];
+                const auto name = [&] { return face_name(cage, f) + ": the edge from vertex " + std::to_string(a) + " to " + std::to_string(b); };
+                if (++edge.faces > 2) throw_input(name() + " is not manifold: found a third face there, expected at most two; split the cage along it");
+                if (edge.faces == 2 && edge.from == a)
+                    throw_input(name() + ": found another face that runs along it the same way, expected all faces to turn the same way; reverse one of the two");
+                edge.from = a;
             }
         }
         for (const auto& c : cage.creases) {
@@ -87,7 +90,7 @@ public:
 
 private:
     struct Edge {
-        int faces = 0;
+        int faces = 0, from = -1;  // its first vertex in the last of them
         float sharpness = 0;
     };
     static float limited(double s) { return static_cast<float>(std::min(s, double(kInfiniteSharpness))); }

@@ -213,6 +213,9 @@ TEST(Subdivision, RefusesWhatHasNoSurface) {
     Cage book = test::cube_cage();
     book.faces.push_back({0, 1, 7});
     expect_refused(book, Scheme::catmull_clark, ErrorKind::input, "found a third face");
+    Cage turned = test::cube_cage();
+    std::reverse(turned.faces[3].begin(), turned.faces[3].end());
+    expect_refused(turned, Scheme::catmull_clark, ErrorKind::input, "turn the same way");
     expect_refused(test::cube_cage(), Scheme::loop, ErrorKind::input, "triangles only");
     expect_refused(test::creased(test::cube_cage(), {{0, 7, 1}}), Scheme::catmull_clark, ErrorKind::input, "ends of an edge");
     expect_refused(test::fan_cage(600), Scheme::catmull_clark, ErrorKind::input, "600 faces around it");
