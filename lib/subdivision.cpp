@@ -9,6 +9,7 @@
 #include "error.h"
 #include "patches/bezier_triangle.h"
 #include "patches/tensor_bezier.h"
+#include "subdivision_cell.h"
 #include "subdivision_face.h"
 
 namespace isoparm {

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "error.h"
+#include "subdivision_cell.h"
 
 namespace isoparm {
 namespace {
 
 using Box3 = Vec3<Interval>;
-using Controls = std::vector<Vec3<Interval>>;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kDeepest = 48;       // parameters of sub-faces stay exact
 constexpr int kAllSmooth = 11;     // by then semi-sharp creases are smooth
@@ -26,116 +25,6 @@ Box3 hull_of(const Ring<Interval>& ring) {
     Box3 all = ring.points[0];
     for (const auto& p : ring.points) all = hull(all, p);
     return all;
-}
-
-/// c[i][k]: 48 times the coefficient of x^i of the k-th uniform cubic B-spline on [-1/2, 1/2].
-constexpr double kSpline[4][4] = {{1, 23, 23, 1}, {-6, -30, 30, 6}, {12, -12, -12, 12}, {-8, 24, -24, 8}};
-
-/// The twelve basis functions of a regular Loop triangle, times 12, by the barycentric coordinates of the corners (Stam 1998).
-template <class P> std::array<P, 12> box_splines(const P& u, const P& v, const P& w) {
-    const auto corner = [](const P& a, const P& b, const P& c) {
-        const P bc = b * c, bb = b * b, cc = c * c, aa = a * a;
-        return P(6) * aa * aa + P(24) * aa * a * (b + c) + P(24) * aa * (bb + cc) + P(60) * aa * bc + P(8) * a * (bb * b + cc * c) + P(36) * a * bc * (b + c) + bb * bb +
-               cc * cc + P(6) * bc * (bb + cc) + P(12) * bc * bc;
-    };
-    const auto across = [](const P& a, const P& b, const P& c) {
-        const P ab = a * b, aa = a * a, bb = b * b;
-        return aa * aa + bb * bb + P(6) * ab * (aa + bb) + P(12) * ab * ab + P(2) * c * (aa * a + bb * b) + P(6) * c * ab * (a + b);
-    };
-    const auto outer = [](const P& a, const P& b) { return a * a * a * (a + P(2) * b); };
-    return {corner(u, v, w), corner(v, w, u), corner(w, u, v), across(u, v, w), across(v, w, u), across(w, u, v),
-            outer(u, v),     outer(u, w),     outer(v, w),     outer(v, u),     outer(w, u),     outer(w, v)};
-}
-
-/// A homogeneous polynomial, by the exponents of u, v and w.
-struct Form {
-    std::map<std::array<int, 3>, double> c;
-    Form() = default;
-    explicit Form(int constant) { c[{0, 0, 0}] = constant; }
-    explicit Form(std::map<std::array<int, 3>, double> terms) : c(std::move(terms)) {}
-    friend Form operator+(Form a, const Form& b) {
-        for (const auto& [e, x] : b.c) a.c[e] += x;
-        return a;
-    }
-    friend Form operator*(const Form& a, const Form& b) {
-        Form r;
-        for (const auto& [d, x] : a.c)
-            for (const auto& [e, y] : b.c) r.c[{d[0] + e[0], d[1] + e[1], d[2] + e[2]}] += x * y;
-        return r;
-    }
-};
-
-/// A regular sub-face: polynomials in (u,v) - centre of the face's parameters.
-struct Cell {
-    double u, v;  // the centre
-    Vec3<Polynomial> exact;
-    int degree;
-    std::vector<Point> c;  // the middles of the coefficients, at (degree + 1) i + j
-
-    void keep_middles() {
-        c.resize((degree + 1) * (degree + 1));
-        for (int i = 0; i <= exact.x.degree_u(); ++i)
-            for (int j = 0; j <= exact.x.degree_v(); ++j)
-                c[(degree + 1) * i + j] = {mid(exact.x.coefficient(i, j)), mid(exact.y.coefficient(i, j)), mid(exact.z.coefficient(i, j))};
-    }
-};
-
-/// h to a power; h is a power of two, or minus one, so this is exact.
-double power(double h, int n) { return std::ldexp(h < 0 && n % 2 ? -1.0 : 1.0, n * std::ilogb(h)); }
-
-/// A square or triangle with the corner (u,v) and the sides h along u and v (below 0: turned by half).
-struct Place {
-    double u, v, h;
-    Interval across_u() const { return h > 0 ? Interval(u, u + h) : Interval(u + h, u); }
-    Interval across_v() const { return h > 0 ? Interval(v, v + h) : Interval(v + h, v); }
-    Place child(int k, bool triangle) const {
-        const double half = h / 2;
-        if (!triangle) return {k == 1 || k == 2 ? u + half : u, k >= 2 ? v + half : v, half};
-        return k == 3 ? Place{u + half, v + half, -half} : Place{k == 1 ? u + half : u, k == 2 ? v + half : v, half};
-    }
-};
-
-Cell bicubic(const Controls& p, const Place& at) {
-    Cell cell{at.u + at.h / 2, at.v + at.h / 2, {}, 3, {}};
-    const Polynomial x = Polynomial::variable_u(at.across_u()), y = Polynomial::variable_v(at.across_v()), all = x * x * x * (y * y * y);
-    for (int axis = 0; axis < 3; ++axis) {
-        Polynomial& f = cell.exact[axis] = all;
-        Interval rows[4][4];  // [i][l]: along u done
-        for (int i = 0; i < 4; ++i)
-            for (int l = 0; l < 4; ++l) {
-                rows[i][l] = Interval(0);
-                for (int k = 0; k < 4; ++k) rows[i][l] += Interval(kSpline[i][k]) * p[4 * k + l][axis];
-            }
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < 4; ++j) {
-                Interval sum(0);
-                for (int l = 0; l < 4; ++l) sum += Interval(kSpline[j][l]) * rows[i][l];
-                f.coefficient(i, j) = sum / Interval(2304) * Interval(power(at.h, -i - j));
-            }
-    }
-    cell.keep_middles();
-    return cell;
-}
-
-Cell quartic(const Controls& p, const Place& at) {
-    static const auto basis = [] {  // in the triangle's own parameters
-        const Polynomial v = Polynomial::variable_u({0, 1}), w = Polynomial::variable_v({0, 1});
-        return box_splines<Polynomial>(Polynomial(1) - v - w, v, w);
-    }();
-    const Polynomial x = Polynomial::variable_u(at.across_u()), y = Polynomial::variable_v(at.across_v()), all = square(square(x)) * square(square(y));
-    Cell cell{at.u + at.h / 2, at.v + at.h / 2, {}, 4, {}};
-    for (int axis = 0; axis < 3; ++axis) {
-        Polynomial& f = cell.exact[axis] = all;
-        for (int i = 0; i <= 4; ++i)
-            for (int j = 0; j <= 4; ++j) {
-                Interval sum(0);
-                for (int k = 0; k < 12 && i + j <= 4; ++k)
-                    if (i <= basis[k].degree_u() && j <= basis[k].degree_v()) sum += basis[k].coefficient(i, j) * p[k][axis];
-                f.coefficient(i, j) = sum / Interval(12) * Interval(power(at.h, -i - j));
-            }
-    }
-    cell.keep_middles();
-    return cell;
 }
 
 /// What is left around a vertex.
@@ -243,7 +132,7 @@ public:
             if (n.cell >= 0) add(e.over, derivatives(cells_[n.cell], clipped(box, n.at)), first);
             return true;
         });
-        const Cell& c = cells_[leaf(e.u, e.v).cell];
+        const SubdivisionCell& c = cells_[leaf(e.u, e.v).cell];
         for (int axis = 0; axis < 3; ++axis) c.exact[axis].template jets<0>(c.u, c.v, e.u, e.v, &e.centre[axis], nullptr);
         return e;
     }
@@ -266,14 +155,14 @@ public:
 
 private:
     struct Node {
-        Place at{};
+        FacePlace at{};
         int children = -1, cell = -1, core = -1;  // the first of four, or what it is
         int over = -1;                            // where there is no core inside
         Box3 hull;
     };
     bool triangle() const { return scheme_ == Scheme::loop; }
 
-    static Box3 positions(const Cell& c, const Box& box) {
+    static Box3 positions(const SubdivisionCell& c, const Box& box) {
         Box3 b;
         for (int axis = 0; axis < 3; ++axis) {
             JetUV<Interval, 0> x;
@@ -283,7 +172,7 @@ private:
         return b;
     }
     using Derivatives = Vec3<JetUV<Interval, 3>>;
-    static Derivatives derivatives(const Cell& c, const Box& box) {
+    static Derivatives derivatives(const SubdivisionCell& c, const Box& box) {
         Derivatives d;
         for (int axis = 0; axis < 3; ++axis) c.exact[axis].template jets<3>(c.u, c.v, box.u, box.v, nullptr, &d[axis]);
         return d;
@@ -294,15 +183,15 @@ private:
             for (int axis = 0; axis < 3; ++axis)
                 for (int k = 0; k < all.x.size; ++k) all[axis].c[k] = isoparm::hull(all[axis].c[k], more[axis].c[k]);
     }
-    static bool inside(const Place& at, const Box& box) {
+    static bool inside(const FacePlace& at, const Box& box) {
         const Interval u = at.across_u(), v = at.across_v();
         return u.lo >= box.u.lo && u.hi <= box.u.hi && v.lo >= box.v.lo && v.hi <= box.v.hi;
     }
-    static Box clipped(const Box& box, const Place& at) { return {clip(box.u, at.across_u()), clip(box.v, at.across_v())}; }
+    static Box clipped(const Box& box, const FacePlace& at) { return {clip(box.u, at.across_u()), clip(box.v, at.across_v())}; }
 
     void build(int node, const Ring<Interval>& ring, int depth, FaceLimits& limits) {
         const Subdivider<Interval> s(ring, scheme_);
-        const Place at = nodes_[node].at;
+        const FacePlace at = nodes_[node].at;
         const auto count = [&] {
             if (++limits.pieces > limits.most_pieces)
                 throw Error(ErrorKind::budget, "the limit surface consists of more than " + std::to_string(limits.most_pieces) +
@@ -311,7 +200,7 @@ private:
         if (const auto control = s.regular()) {
             count();
             nodes_[node].cell = static_cast<int>(cells_.size());
-            cells_.push_back(triangle() ? quartic(*control, at) : bicubic(*control, at));
+            cells_.push_back(make_subdivision_cell(*control, at, scheme_));
             nodes_[node].hull = positions(cells_.back(), {at.across_u(), at.across_v()});
             nodes_[node].over = static_cast<int>(overs_.size());
             overs_.push_back(derivatives(cells_.back(), {at.across_u(), at.across_v()}));
@@ -359,7 +248,7 @@ private:
         if (!meets(box, n.at) || !f(n) || n.children < 0) return;
         for (int k = 0; k < 4; ++k) visit(n.children + k, box, f);
     }
-    bool meets(const Box& box, const Place& at) const {
+    bool meets(const Box& box, const FacePlace& at) const {
         const auto overlap = [](const Interval& x, const Interval& y) {
             return x.lo == x.hi ? x.lo >= y.lo && (x.lo < y.hi || (x.lo == 1 && y.hi == 1)) : x.lo < y.hi && x.hi > y.lo;
         };
@@ -384,7 +273,7 @@ private:
             }
             return x;
         }
-        const Cell& cell = cells_[n.cell];
+        const SubdivisionCell& cell = cells_[n.cell];
         const double dx = u - cell.u, dy = v - cell.v;
         const int d = cell.degree;
         for (int axis = 0; axis < 3; ++axis) {
@@ -410,7 +299,7 @@ private:
 
     Scheme scheme_;
     std::vector<Node> nodes_;
-    std::vector<Cell> cells_;
+    std::vector<SubdivisionCell> cells_;
     std::vector<Core> cores_;
     std::vector<Derivatives> overs_;
 };
@@ -419,34 +308,6 @@ private:
 
 Patch make_subdivision_face(const Ring<Interval>& ring, Scheme scheme, FaceLimits& limits) {
     return Patch(std::make_shared<SubdivisionFace>(ring, scheme, limits));
-}
-
-std::vector<Point> bezier_points(const std::vector<Vec3<Interval>>& control, Scheme scheme) {
-    // The Bezier points of a polynomial are its blossoms; of a cubic spline segment: 6 times the weights of its control points.
-    static constexpr double cubic[4][4] = {{1, 4, 1, 0}, {0, 4, 2, 0}, {0, 2, 4, 0}, {0, 1, 4, 1}};
-    std::vector<Point> result;
-    if (scheme != Scheme::loop) {
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < 4; ++j) {
-                Vec3<Interval> sum;
-                for (int k = 0; k < 4; ++k)
-                    for (int l = 0; l < 4; ++l) sum = sum + Interval(cubic[i][k] * cubic[j][l]) * control[4 * k + l];
-                result.push_back(middle(sum / Interval(36)));
-            }
-        return result;
-    }
-    // A homogeneous form in u, v, w is its own Bernstein form, but for the multinomial coefficients; b_ijk belongs to weights that the patch calls w (corner 0), u, v.
-    const auto variable = [](int k) { return Form({{{k == 0, k == 1, k == 2}, 1.0}}); };
-    const auto basis = box_splines<Form>(variable(0), variable(1), variable(2));
-    for (int k = 0; k <= 4; ++k)
-        for (int j = 0; j + k <= 4; ++j) {
-            const int i = 4 - j - k;
-            Vec3<Interval> sum;
-            for (int b = 0; b < 12; ++b)
-                if (const auto term = basis[b].c.find({k, i, j}); term != basis[b].c.end()) sum = sum + Interval(term->second) * control[b];
-            result.push_back(middle(sum / Interval(12 * binomial(4, i) * binomial(4 - i, j))));
-        }
-    return result;
 }
 
 }  // namespace isoparm

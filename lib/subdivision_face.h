@@ -25,8 +25,4 @@ struct FaceLimits {
 /// `ring`: of a quad (Catmull-Clark) or a triangle (Loop). Throws Error(budget) when there are more pieces than the limits allow.
 Patch make_subdivision_face(const Ring<Interval>& ring, Scheme scheme, FaceLimits& limits);
 
-/// The Bezier points of a regular face, from its 16 or 12 control points: of Catmull-Clark at 4 i + j, i along u; of Loop
-/// in the order of make_bezier_triangle.
-std::vector<Point> bezier_points(const std::vector<Vec3<Interval>>& control, Scheme scheme);
-
 }  // namespace isoparm
