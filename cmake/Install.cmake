@@ -10,7 +10,8 @@ if(TARGET isoparm)
     endif()
 endif()
 
-install(DIRECTORY lib/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isoparm FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY lib/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isoparm FILES_MATCHING PATTERN "*.h"
+    PATTERN "limit_refiner.h" EXCLUDE)  # OpenSubdiv's types stay inside
 install(FILES "${PROJECT_BINARY_DIR}/isoparm_version.h" DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isoparm)
 install(CODE "set(ISOPARM_HEADERS \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/isoparm\")")
 install(SCRIPT cmake/installed_includes.cmake)

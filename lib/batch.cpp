@@ -185,46 +185,13 @@ PolynomialCells::PolynomialCells(const std::vector<double>& lines_u, const std::
     const std::size_t side = static_cast<std::size_t>(degree_) + 1;
     for (std::size_t k = 0; k < forms.size(); ++k) {
         const std::size_t i = k / (lines_v.size() - 1), j = k % (lines_v.size() - 1);
-        Cell cell{mid({lines_u[i], lines_u[i + 1]}), mid({lines_v[j], lines_v[j + 1]}), 0.5 * (lines_u[i + 1] - lines_u[i]), 0.5 * (lines_v[j + 1] - lines_v[j]), {}};
+        Cell cell{mid({lines_u[i], lines_u[i + 1]}), mid({lines_v[j], lines_v[j + 1]}), {}};
         cell.c.assign(forms[k].size() * side * side, 0.0);
         for (std::size_t axis = 0; axis < forms[k].size(); ++axis)
             for (int p = 0; p <= forms[k][axis].degree_u(); ++p)
                 for (int q = 0; q <= forms[k][axis].degree_v(); ++q) cell.c[(axis * side + p) * side + q] = mid(forms[k][axis].coefficient(p, q));
         cells_.push_back(std::move(cell));
     }
-}
-
-std::vector<BezierCell> PolynomialCells::bezier_cells() const {
-    std::vector<BezierCell> list;
-    const std::size_t side = static_cast<std::size_t>(degree_) + 1;
-    for (const Cell& cell : cells_) {
-        BezierCell b{cell.u - cell.half_u, cell.u + cell.half_u, cell.v - cell.half_v, cell.v + cell.half_v, 1, 1, {}, {}};
-        const auto size_of = [&](std::size_t k) {  // of a term, in the cell
-            return std::fabs(cell.c[k]) * std::pow(cell.half_u, double(k / side % side)) * std::pow(cell.half_v, double(k % side));
-        };
-        double largest = 0;
-        for (std::size_t k = 0; k < cell.c.size(); ++k) largest = std::max(largest, size_of(k));
-        for (std::size_t k = 0; k < cell.c.size(); ++k) {  // without the terms that fill degrees up, or are rounding errors
-            if (size_of(k) <= 0x1p-51 * largest) continue;
-            b.degree_u = std::max(b.degree_u, static_cast<int>(k / side % side));
-            b.degree_v = std::max(b.degree_v, static_cast<int>(k % side));
-        }
-        std::vector<std::vector<double>> coordinate;
-        for (std::size_t axis = 0; axis < cell.c.size() / (side * side); ++axis) {
-            std::vector<double> c;
-            for (int i = 0; i <= b.degree_u; ++i)
-                for (int j = 0; j <= b.degree_v; ++j) c.push_back(cell.c[(axis * side + static_cast<std::size_t>(i)) * side + static_cast<std::size_t>(j)]);
-            coordinate.push_back(bernstein_from_centred(c, b.degree_u, b.degree_v, cell.half_u, cell.half_v));
-        }
-        for (std::size_t k = 0; k < coordinate[0].size(); ++k) {
-            const double w = rational_ ? coordinate[3][k] : 1;
-            if (!(w > 0)) return {};
-            b.poles.push_back(Point{coordinate[0][k], coordinate[1][k], coordinate[2][k]} / w);
-            if (rational_) b.weights.push_back(w);
-        }
-        list.push_back(std::move(b));
-    }
-    return list;
 }
 
 std::size_t PolynomialCells::cell_at(double u, double v) const {

@@ -10,7 +10,6 @@
 #include <span>
 #include <vector>
 
-#include "bezier_cells.h"
 #include "scalar/polynomial.h"
 
 namespace isoparm {
@@ -54,13 +53,10 @@ public:
     const FrameError& error() const { return error_; }
     /// As Patch::frames. Points on a line between cells belong to the cell on its right.
     void frames(Isa isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const;
-    /// Of the lowest degree, up to rounding; poles of a cell with a weight that is not positive do not exist: then none at all.
-    std::vector<BezierCell> bezier_cells() const;
 
 private:
     struct Cell {
         double u, v;  // the middle
-        double half_u, half_v;
         std::vector<double> c;
     };
     std::size_t cell_at(double u, double v) const;

@@ -1,6 +1,7 @@
 #include "bezier_cells.h"
 
-#include "scalar/polynomial.h"
+#include <algorithm>
+#include <cmath>
 
 namespace isoparm {
 namespace {
@@ -21,7 +22,54 @@ template <class T> T casteljau(std::vector<T> b, double t) {
     return b[0];
 }
 
+/// What a term amounts to in the cell.
+double size_of_term(const Polynomial& x, int i, int j, double hu, double hv) { return std::fabs(mid(x.coefficient(i, j))) * std::pow(hu, i) * std::pow(hv, j); }
+
+/// Empty where a weight is not positive or a degree too high.
+std::vector<BezierCell> bezier_cell(const std::vector<Polynomial>& form, double u0, double u1, double v0, double v1, int max_degree) {
+    BezierCell cell{u0, u1, v0, v1, 1, 1, {}, {}};
+    const double hu = 0.5 * (u1 - u0), hv = 0.5 * (v1 - v0);
+    double largest = 0;
+    const auto each_term = [&](auto f) {
+        for (const Polynomial& x : form)
+            for (int i = 0; i <= x.degree_u(); ++i)
+                for (int j = 0; j <= x.degree_v(); ++j) f(size_of_term(x, i, j, hu, hv), i, j);
+    };
+    each_term([&](double size, int, int) { largest = std::max(largest, size); });
+    each_term([&](double size, int i, int j) {  // the others are rounding errors
+        if (size > 0x1p-51 * largest) cell.degree_u = std::max(cell.degree_u, i), cell.degree_v = std::max(cell.degree_v, j);
+    });
+    if (std::max(cell.degree_u, cell.degree_v) > max_degree) return {};
+    std::vector<std::vector<double>> coordinate;
+    for (const Polynomial& x : form) {
+        std::vector<double> c;
+        for (int i = 0; i <= cell.degree_u; ++i)
+            for (int j = 0; j <= cell.degree_v; ++j) c.push_back(i <= x.degree_u() && j <= x.degree_v() ? mid(x.coefficient(i, j)) : 0);
+        coordinate.push_back(bernstein_from_centred(c, cell.degree_u, cell.degree_v, hu, hv));
+    }
+    for (std::size_t k = 0; k < coordinate[0].size(); ++k) {
+        const double w = form.size() == 4 ? coordinate[3][k] : 1;
+        if (!(w > 0)) return {};
+        cell.poles.push_back(Point{coordinate[0][k], coordinate[1][k], coordinate[2][k]} / w);
+        if (form.size() == 4) cell.weights.push_back(w);
+    }
+    return {cell};
+}
+
 }  // namespace
+
+std::vector<BezierCell> bezier_cells(const Patch& patch, int max_degree) {
+    const auto us = patch.lines_u(), vs = patch.lines_v();
+    std::vector<BezierCell> list;
+    for (std::size_t i = 0; i + 1 < us.size(); ++i)
+        for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
+            const auto form = patch.exact_cell(i, j);
+            const auto cell = form.empty() ? std::vector<BezierCell>{} : bezier_cell(form, us[i], us[i + 1], vs[j], vs[j + 1], max_degree);
+            if (cell.empty()) return {};
+            list.push_back(cell[0]);
+        }
+    return list;
+}
 
 std::vector<double> bernstein_from_centred(const std::vector<double>& c, int p, int q, double hu, double hv) {
     const auto rows = std::size_t(p) + 1, columns = std::size_t(q) + 1;

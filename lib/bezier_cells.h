@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "scalar/vec.h"
+#include "patch.h"
 
 namespace isoparm {
 
@@ -17,6 +17,10 @@ struct BezierCell {
     /// Rounded, for tests and samples.
     Point operator()(double u, double v) const;
 };
+
+/// The cells between breaks, u-major, of the lowest degree, up to rounding; on the triangular domain one, over the unit square. None where a
+/// cell is neither polynomial nor known as rational, a weight is not positive, or a degree is above `max_degree`.
+std::vector<BezierCell> bezier_cells(const Patch& patch, int max_degree = 9);
 
 /// From coefficients c[i * (q + 1) + j] of x^i y^j, x and y from -hu to hu and -hv to hv, those of Bernstein polynomials of degrees p, q.
 std::vector<double> bernstein_from_centred(const std::vector<double>& c, int p, int q, double hu, double hv);

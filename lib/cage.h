@@ -1,10 +1,13 @@
 // cage.h -- the control cage of a subdivision surface, as a value.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "scalar/vec.h"
 
 namespace isoparm {
+
+enum class Scheme { catmull_clark, loop, bilinear };
 
 /// Vertices are named by their index, from 0. Faces list theirs in order, all turning the same way.
 struct Cage {
@@ -27,5 +30,11 @@ struct Cage {
     Boundary boundary = Boundary::edge_and_corner;
     std::vector<int> face_lines;  // where each face was read, for messages; or empty
 };
+
+/// "face 3 (line 12)", for messages.
+std::string face_name(const Cage& cage, std::size_t face);
+/// Throws Error(input) when there is no face, indices are out of range, a face is degenerate or of a size that the scheme does not know, a position is
+/// not finite or a sharpness negative.
+void check_cage(const Cage& cage, Scheme scheme);
 
 }  // namespace isoparm

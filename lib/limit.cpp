@@ -2,151 +2,18 @@
 
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/bfr/surface.h>
-#include <opensubdiv/far/error.h>
-#include <opensubdiv/far/topologyDescriptor.h>
 #include <opensubdiv/far/topologyRefiner.h>
-#include <opensubdiv/far/topologyRefinerFactory.h>
 
 #include <algorithm>
-#include <mutex>
 
-#include "error.h"
+#include "limit_refiner.h"
 
 namespace isoparm {
 namespace {
 
 namespace Bfr = OpenSubdiv::Bfr;
 namespace Far = OpenSubdiv::Far;
-namespace Sdc = OpenSubdiv::Sdc;
-using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-using Refiner = std::unique_ptr<Far::TopologyRefiner>;
 using Surface = Bfr::Surface<double>;
-
-/// Collects what OpenSubdiv would print, as long as it lives; one at a time.
-class Messages {
-public:
-    Messages() : lock_(mutex()) {
-        text().clear();
-        Far::SetErrorCallback([](Far::ErrorType, const char* message) { add(message); });
-        Far::SetWarningCallback(add);
-    }
-    ~Messages() {
-        Far::SetErrorCallback(nullptr);
-        Far::SetWarningCallback(nullptr);
-    }
-    void throw_any() const {
-        if (!text().empty()) throw_input("OpenSubdiv refuses the cage: " + text());
-    }
-
-private:
-    static void add(const char* message) {
-        if (text().size() > 1000) return;  // it may say the same of every face
-        if (!text().empty()) text() += "; ";
-        for (const char* c = message; *c; ++c) text() += *c == '\n' ? ' ' : *c;
-    }
-    static std::mutex& mutex() {
-        static std::mutex m;
-        return m;
-    }
-    static std::string& text() {
-        static std::string t;
-        return t;
-    }
-    std::lock_guard<std::mutex> lock_;
-};
-
-std::string face_name(const Cage& cage, std::size_t face) {
-    const std::string name = "face " + std::to_string(face);
-    return face < cage.face_lines.size() ? name + " (line " + std::to_string(cage.face_lines[face]) + ")" : name;
-}
-
-// OpenSubdiv reads out of bounds where these do not hold.
-void check(const Cage& cage, Scheme scheme) {
-    const int vertices = static_cast<int>(cage.positions.size()), faces = static_cast<int>(cage.faces.size());
-    const auto in_range = [](int i, int count, const std::string& what) {
-        if (i < 0 || i >= count) throw_input(what + ": found index " + std::to_string(i) + ", expected 0 to " + std::to_string(count - 1));
-    };
-    if (faces == 0) throw_input("a cage without faces has no limit surface");
-    for (std::size_t k = 0; k < cage.faces.size(); ++k) {
-        std::vector<int> f = cage.faces[k];
-        const std::string name = face_name(cage, k);
-        for (const int i : f) in_range(i, vertices, name);
-        if (f.size() < 3 || f.size() > static_cast<std::size_t>(Far::VALENCE_LIMIT))
-            throw_input(name + ": found " + std::to_string(f.size()) + " vertices, expected 3 to " + std::to_string(Far::VALENCE_LIMIT));
-        if (scheme == Scheme::loop && f.size() != 3)
-            throw_input(name + ": found " + std::to_string(f.size()) + " vertices, expected 3: Loop's scheme is of triangles only");
-        std::sort(f.begin(), f.end());
-        if (std::adjacent_find(f.begin(), f.end()) != f.end()) throw_input(name + " is degenerate: found a vertex twice, expected different vertices");
-    }
-    for (const Point& p : cage.positions)
-        if (!finite(p)) throw_input("a vertex of the cage is not finite");
-    const auto not_negative = [](double s) {
-        if (!(s >= 0)) throw_input("a sharpness: found " + to_text(s) + ", expected 0 or more");
-    };
-    for (const auto& c : cage.creases) {
-        not_negative(c.sharpness);
-        in_range(c.a, vertices, "a crease");
-        in_range(c.b, vertices, "a crease");
-    }
-    for (const auto& c : cage.corners) {
-        not_negative(c.sharpness);
-        in_range(c.vertex, vertices, "a corner");
-    }
-    for (const int f : cage.holes) in_range(f, faces, "a hole");
-}
-
-Sdc::SchemeType scheme_type(Scheme scheme) {
-    switch (scheme) {
-        case Scheme::loop: return Sdc::SCHEME_LOOP;
-        case Scheme::bilinear: return Sdc::SCHEME_BILINEAR;
-        default: return Sdc::SCHEME_CATMARK;
-    }
-}
-
-Sdc::Options scheme_options(const Cage& cage) {
-    Sdc::Options options;
-    options.SetVtxBoundaryInterpolation(cage.boundary == Cage::Boundary::none        ? Sdc::Options::VTX_BOUNDARY_NONE
-                                        : cage.boundary == Cage::Boundary::edge_only ? Sdc::Options::VTX_BOUNDARY_EDGE_ONLY
-                                                                                     : Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
-    return options;
-}
-
-// From 10 on a crease is infinitely sharp, so nothing is lost by stopping there, and everything fits a float.
-float sharpness(double s) { return static_cast<float>(std::min(s, double{Sdc::Crease::SHARPNESS_INFINITE})); }
-
-Refiner make_refiner(const Cage& cage, Scheme scheme) {
-    std::vector<int> sizes, vertices, crease_ends, corners;
-    std::vector<float> creases, corner_weights;
-    for (const auto& f : cage.faces) {
-        sizes.push_back(static_cast<int>(f.size()));
-        vertices.insert(vertices.end(), f.begin(), f.end());
-    }
-    for (const auto& c : cage.creases) {
-        crease_ends.insert(crease_ends.end(), {c.a, c.b});
-        creases.push_back(sharpness(c.sharpness));
-    }
-    for (const auto& c : cage.corners) {
-        corners.push_back(c.vertex);
-        corner_weights.push_back(sharpness(c.sharpness));
-    }
-    Far::TopologyDescriptor d;
-    d.numVertices = static_cast<int>(cage.positions.size());
-    d.numFaces = static_cast<int>(sizes.size());
-    d.numVertsPerFace = sizes.data();
-    d.vertIndicesPerFace = vertices.data();
-    d.numCreases = static_cast<int>(creases.size());
-    d.creaseVertexIndexPairs = crease_ends.data();
-    d.creaseWeights = creases.data();
-    d.numCorners = static_cast<int>(corners.size());
-    d.cornerVertexIndices = corners.data();
-    d.cornerWeights = corner_weights.data();
-    d.numHoles = static_cast<int>(cage.holes.size());
-    d.holeIndices = cage.holes.data();
-
-    Factory::Options options(scheme_type(scheme), scheme_options(cage));
-    options.validateFullTopology = true;
-    return Refiner(Factory::Create(d, options));
-}
 
 /// Which faces are single patches, from the faces and creases around their vertices. Asked before OpenSubdiv is: version
 /// 3.5 can write out of bounds when it builds the patches at an interior vertex of valence 2 (its pull requests 1301, 1353).
@@ -239,11 +106,8 @@ struct LimitSurface::Impl {
     std::vector<Face> faces;
 
     Impl(const Cage& c, Scheme s) : cage(c), scheme(s) {
-        check(cage, scheme);
-        const Messages messages;
-        refiner = make_refiner(cage, scheme);
-        messages.throw_any();
-        if (!refiner) throw_input("OpenSubdiv refuses the cage without saying why");
+        const OsdMessages messages;
+        refiner = make_refiner(cage, scheme, messages);
         make_surfaces();  // what is said about the patches of irregular faces is of no concern: they are only counted
     }
 

@@ -17,8 +17,6 @@
 
 namespace isoparm {
 
-enum class Scheme { catmull_clark, loop, bilinear };
-
 /// Position and derivatives of the limit surface in the parameters of its face.
 struct LimitPoint {
     Point p, du, dv, duu, duv, dvv;
@@ -61,5 +59,17 @@ private:
     struct Impl;
     std::shared_ptr<const Impl> impl_;
 };
+
+/// A vertex of the cage refined `levels` times and its limit position by OpenSubdiv's masks. (u,v) are parameters of the face, or of its corner's
+/// quad, [0,1]^2 from that corner, when it is not as the scheme's faces are. One for each face that the vertex belongs to.
+struct LimitSample {
+    int face, corner;  // -1: the whole face
+    double u, v;
+    Point p, normal;  // unit, by OpenSubdiv's tangents; NaN at creases and sharp corners, which have several, and where these are not the
+                      // limit's: on boundaries of Catmull-Clark cages but for two faces at the vertex
+    bool exact;  // OpenSubdiv's mask is that of the limit: not so at the end of a crease, at valence 2, and where something semi-sharp is left
+};
+/// Throws as LimitSurface does.
+std::vector<LimitSample> limit_samples(const Cage& cage, Scheme scheme, int levels);
 
 }  // namespace isoparm

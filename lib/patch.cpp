@@ -109,7 +109,7 @@ struct ScaledDerivatives {
 
 std::optional<Point> unit_normal(const Patch& patch, const PointJet& jet, double u, double v) {
     const ScaledDerivatives d(patch, jet);
-    if (!finite(d.u) || !finite(d.v)) return {};
+    if (!finite(d.u) || !finite(d.v)) return patch.singular_normal(u, v);
     if (d.regular()) return normalized(cross(d.u, d.v));
     // S_u x S_v vanishes: the direction in which it leaves 0 when one moves into the domain, if all ways agree.
     const Point nu = cross(d.uu, d.v) + cross(d.u, d.uv), nv = cross(d.uv, d.v) + cross(d.u, d.vv);

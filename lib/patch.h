@@ -57,12 +57,13 @@ public:
         virtual void frames(std::size_t n, const double* u, const double* v, PointFrame* out) const = 0;
         /// As Patch::frames(u, v, out), sizes checked.
         virtual void frame_arrays(Isa isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const = 0;
-        virtual std::vector<BezierCell> bezier_cells() const = 0;
         virtual Enclosure enclose(const Box& box) const = 0;
         /// Encloses every position over the box; cheaper than enclose().
         virtual Vec3<Interval> enclose_points(const Box& box) const = 0;
         /// As Patch::exact_cell().
-        virtual std::vector<Polynomial> exact_cell(std::size_t i, std::size_t j) const = 0;
+        virtual std::vector<Polynomial> exact_cell(std::size_t, std::size_t) const { return {}; }
+        /// The unit normal at a point where S_u or S_v does not exist, if the surface has one there all the same.
+        virtual std::optional<Point> singular_normal(double, double) const { return {}; }
     };
     explicit Patch(std::shared_ptr<const Concept> impl) : impl_(std::move(impl)) {}
 
@@ -85,14 +86,12 @@ public:
     /// domain; all arrays have u's size, else throws std::invalid_argument. No allocation for polynomial and rational surfaces. This
     /// machine must run `isa`; there is no reason to give it but to measure.
     void frames(std::span<const double> u, std::span<const double> v, const FrameArrays& out, Isa isa = chosen_isa()) const;
-    /// The cells between breaks, u-major, as Bezier patches, up to rounding; on the triangular domain one, over the unit square. None
-    /// where a cell is not polynomial or rational with positive weights, of degree <= 7 both ways.
-    std::vector<BezierCell> bezier_cells() const { return impl_->bezier_cells(); }
     Enclosure enclose(const Box& box) const { return impl_->enclose(box); }
     Vec3<Interval> enclose_points(const Box& box) const { return impl_->enclose_points(box); }
     /// The surface between lines_u()[i], lines_u()[i+1] and lines_v()[j], lines_v()[j+1], these included: polynomials x, y, z, or x, y, z
     /// and their common denominator, in (u,v) minus the middle of the cell. Empty where it is neither polynomial nor known as rational.
     std::vector<Polynomial> exact_cell(std::size_t i, std::size_t j) const { return impl_->exact_cell(i, j); }
+    std::optional<Point> singular_normal(double u, double v) const { return impl_->singular_normal(u, v); }
     /// Encloses the exact position at (u,v).
     Vec3<Interval> enclose_point(double u, double v) const;
 

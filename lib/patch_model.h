@@ -78,7 +78,6 @@ public:
         }
     }
 
-    std::vector<BezierCell> bezier_cells() const override { return batch_.bezier_cells(); }
     Enclosure enclose(const Box& box) const override {
         const std::size_t i0 = cell(breaks_u_, box.u.lo), i1 = last_cell(edges_u_, i0, box.u.hi);
         const std::size_t j0 = cell(breaks_v_, box.v.lo), j1 = last_cell(edges_v_, j0, box.v.hi);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "bezier_cells.h"
 #include "error.h"
 #include "module.h"
 #include "peer_module.h"
@@ -26,7 +27,7 @@ std::vector<Cell> cells_of(const Composite& surface) {
     std::vector<Cell> cells;
     for (std::size_t m = 0; m < surface.size(); ++m) {
         if (surface[m].patch.domain() == Domain::triangle) refuse(surface[m].name + ": OpenCASCADE has no triangular patches");
-        const auto own = surface[m].patch.bezier_cells();
+        const auto own = bezier_cells(surface[m].patch);
         if (own.empty()) refuse(surface[m].name + ": OpenCASCADE has polynomial and rational patches only");
         for (const BezierCell& b : own) cells.push_back({m, b});
     }

@@ -49,7 +49,7 @@ std::span<const SceneType<BuiltSurface>> surface_types() {
         {"composite", {"members"}, build_composite},
         {"transform", {"surface", "matrix", "mirror", "scale", "rotate", "translate"}, build_transformed_surface},
         {"file", {"path"}, build_file},
-        {"subdivision", {}, nullptr},
+        {"subdivision", {"scheme", "cage", "boundary", "vertices", "faces", "creases", "corners"}, build_subdivision},
     };
     return types;
 }

@@ -10,7 +10,6 @@
 
 namespace isoparm {
 
-/// build: null for a type that the format knows and this version does not build yet.
 template <class Built> struct SceneType {
     const char* name;
     std::vector<std::string> keys;  // besides "type"
@@ -57,6 +56,9 @@ std::map<std::string, std::vector<std::string>> triangle_methods();
 
 /// The keys c0, c1, d0, d1.
 CoonsCurves frame_of(const Json&, SceneBuilder&);
+
+// build_subdivision.cpp
+BuiltSurface build_subdivision(const Json&, SceneBuilder&);
 
 // build_translational.cpp: of curves to move
 BuiltSurface build_translational(const Json&, SceneBuilder&);

@@ -41,7 +41,6 @@ template <class Built> Built build_typed(const char* what, std::span<const Scene
     if (!type.is(Json::Kind::string)) type.expected(expected);
     for (const auto& t : types) {
         if (type.string() != t.name) continue;
-        if (!t.build) type.expected("a type that is built: " + quoted(t.name) + " is known but not built yet");
         std::vector<std::string> keys{"type"};
         keys.insert(keys.end(), t.keys.begin(), t.keys.end());
         j.allow_keys(keys);

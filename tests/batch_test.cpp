@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "bezier_cells.h"
 #include "curves/line.h"
 #include "error.h"
 #include "patches/cone.h"
@@ -134,7 +135,7 @@ TEST_P(BatchLaw, AgreesWithTheFormula) {
 TEST_P(BatchLaw, BezierCellsAreTheSurface) {
     Random r(5);
     const double size = size_of_sample(patch_);
-    for (const BezierCell& cell : patch_.bezier_cells())
+    for (const BezierCell& cell : bezier_cells(patch_))
         for (int n = 0; n < 20; ++n) {
             double u = r.number(cell.u0, cell.u1), v = r.number(cell.v0, cell.v1);
             if (patch_.domain() == Domain::triangle && u + v > 1) u = 1 - u, v = 1 - v;
@@ -216,7 +217,7 @@ TEST(Batch, PolesAndApexesHaveNoNaN) {
 TEST(Batch, BezierCellsOfBezierPatchesAreTheirPoles) {
     Random r(6);
     const Grid<Point> net = net_at(r, 0);
-    const std::vector<BezierCell> cells = make_bezier_patch(net).bezier_cells();
+    const std::vector<BezierCell> cells = bezier_cells(make_bezier_patch(net));
     ASSERT_EQ(cells.size(), 1u);
     ASSERT_EQ(cells[0].poles.size(), net.size() * net[0].size());
     for (std::size_t k = 0; k < cells[0].poles.size(); ++k) EXPECT_LT(distance(cells[0].poles[k], net[k / net[0].size()][k % net[0].size()]), 1e-13);

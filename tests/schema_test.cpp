@@ -39,7 +39,6 @@ Keys keys_of_schema(const char* definitions) {
 template <class Types> Keys keys_of_registry(const Types& types) {
     Keys keys;
     for (const auto& t : types) {
-        if (!t.build) continue;
         if (t.name != std::string("coons_triangle")) {
             keys[t.name] = {t.keys.begin(), t.keys.end()};
             continue;

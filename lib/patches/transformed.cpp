@@ -1,5 +1,7 @@
 #include "patches/transformed.h"
 
+#include <cmath>
+
 namespace isoparm {
 namespace {
 
@@ -43,12 +45,6 @@ public:
         move(out.position, [&](const Point& p) { return map_.point(p); });
         for (const auto* d : {&out.du, &out.dv}) move(*d, [&](const Point& p) { return map_.vector(p); });
     }
-    std::vector<BezierCell> bezier_cells() const override {
-        auto cells = patch_.bezier_cells();
-        for (BezierCell& cell : cells)
-            for (Point& p : cell.poles) p = map_.point(p);
-        return cells;
-    }
     Enclosure enclose(const Box& box) const override {
         Enclosure e = patch_.enclose(box);
         e.centre = moved(map_, e.centre);
@@ -66,6 +62,12 @@ public:
             for (int k = 0; k < 3; ++k) y[axis] = y[axis] + x[k] * Polynomial(map_.m[axis][k]);
         }
         return y;
+    }
+    std::optional<Point> singular_normal(double u, double v) const override {
+        const auto n = patch_.singular_normal(u, v);
+        if (!n) return {};
+        const Point t = normalized(cross(std::fabs(n->x) < 0.6 ? Point{1, 0, 0} : Point{0, 1, 0}, *n));
+        return normalized(cross(map_.vector(t), map_.vector(cross(*n, t))));
     }
 
 private:
