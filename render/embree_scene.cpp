@@ -307,6 +307,17 @@ void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
     }
 }
 
+Hit EmbreeScene::first(const Ray& ray) const {
+    if (state_->translucent) {
+        std::vector<Hit> hits;
+        layers(ray, hits);
+        return hits.empty() ? Hit{} : hits.front();
+    }
+    Hit hit;
+    intersect(&ray, 1, &hit);
+    return hit;
+}
+
 void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
     const State& s = *state_;
     hits.clear();

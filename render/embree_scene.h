@@ -51,6 +51,8 @@ public:
 
     /// The nearest hit of each of n <= packet rays, whatever its opacity.
     void intersect(const Ray* rays, int n, Hit* hits) const;
+    /// The nearest hit of one ray, whatever its opacity.
+    Hit first(const Ray& ray) const;
     /// Every hit from the nearest to the first opaque one, in order. A tube or ball that lets light through counts
     /// once.
     void layers(const Ray& ray, std::vector<Hit>& hits) const;

@@ -74,8 +74,10 @@ Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, co
     s.opacity = thing.opacity;
     if (!thing.patch) {
         const Point n = normalized(hit.normal);
-        s.normal = facing(dot(n, s.view) < 0 ? -n : n, s.view);
-        s.origin = ray.origin + hit.distance * ray.direction + clear * s.normal;
+        s.shading = s.geometric = dot(n, s.view) < 0 ? -n : n;
+        s.normal = facing(s.shading, s.view);
+        s.position = ray.origin + hit.distance * ray.direction;
+        s.origin = s.position + clear * s.normal;
         s.color = thing.front;
         return s;
     }
@@ -90,7 +92,11 @@ Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, co
     Point position = coefficient(frame, 0, 0);
     if (!finite(position)) position = on_mesh;
     const Point n = normal_of(*thing.patch, du, dv, at, geometric);
-    s.normal = facing(dot(n, geometric) < 0 ? -n : n, s.view);
+    s.at = at;
+    s.position = position;
+    s.geometric = geometric;
+    s.shading = dot(n, geometric) < 0 ? -n : n;
+    s.normal = facing(s.shading, s.view);
     // Above both the surface and the mesh: no facet shadows its own surface.
     s.origin = position + (clear + std::max(0.0, dot(on_mesh - position, s.normal))) * s.normal;
     s.color = front ? thing.front : thing.back;
