@@ -23,6 +23,7 @@ struct Seen {
     Surfel surfel;
     double depth = 0;
     std::uint32_t triangle = 0;
+    double error = 0;  // of the hit, where rays meet patches themselves
 };
 
 void put(const Point& p, float* out) {
@@ -54,7 +55,7 @@ void put(Aov aov, const Seen& seen, float patch, const Color& variance, float* o
         case Aov::z: *out = some ? finite_float(seen.depth) : kAovFar; return;
         case Aov::patch: *out = patch; return;
         case Aov::triangle: *out = on_patch && seen.thing->mesh ? static_cast<float>(seen.triangle) : kAovNone; return;
-        case Aov::error: *out = on_patch ? finite_float(seen.thing->error) : 0; return;
+        case Aov::error: *out = !on_patch ? 0 : finite_float(seen.thing->mesh ? seen.thing->error : seen.error); return;
     }
 }
 
@@ -134,6 +135,7 @@ void AovReader::read(int x, int y, const Color& variance, float* out) const {
         surfels_at(traced_, camera_, &ray, &hit, 1, &seen.surfel);
         seen.depth = camera_.depth(seen.surfel.position);
         seen.triangle = hit.primitive;
+        seen.error = hit.error;
     }
     for (const Aov a : aovs_) {
         put(a, seen, hit.found() ? patch_[hit.geometry] : kAovNone, variance, out);

@@ -232,6 +232,7 @@ struct Quality {
     Tolerance tolerance;
     double pixel;  // pixels of this picture to one of the scene's
     std::vector<Aov> aovs;
+    bool exact;
 };
 
 /// The part `area` of a view, in the view's own pixels.
@@ -246,10 +247,11 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     Picture picture;
     picture.tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
     auto start = std::chrono::steady_clock::now();
-    TracedScene traced = build_traced_scene(scene, view.objects, picture.tolerance, part_of_progress(0, kMeshShare));
+    TracedScene traced = build_traced_scene(scene, view.objects, picture.tolerance, part_of_progress(0, kMeshShare), how.exact);
     for (Thing& thing : traced.things) thing.isolines.width *= how.pixel;
     picture.certified_error = traced.certified_error;
     picture.triangles = traced.triangles;
+    for (const ExactPatch& p : traced.patches) picture.leaves += p.leaves();
     picture.seconds_mesh = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
@@ -257,6 +259,7 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     picture.layers = blank_layers(area.width(), area.height(), how.aovs);
     trace(Tracer(traced, camera, how.samples, scene.image.background), AovReader(scene, traced, camera, how.aovs), area,
           part_of_progress(kMeshShare, 1 - kMeshShare), picture);
+    picture.rays = traced.embree->count();
     paint(overlay(scene, view.objects, traced, camera, how.pixel, view.letter), area.x0, area.y0, picture.image);
     picture.seconds_trace = seconds_since(start);
     return picture;
@@ -286,10 +289,11 @@ Picture render(const Scene& scene, const RenderOptions& options) {
     const Area area = checked_area(options, width, height);
     const Quality how{
         checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples),
-        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs};
+        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs, options.exact};
     double reached = 0;  // progress never runs backwards, whatever its parts report
     const auto views = views_of(scene, width, height, options.also_fit);
     Picture all;
+    all.exact = options.exact;
     all.image = blank(area.width(), area.height(), scene.image.background);
     all.layers = blank_layers(area.width(), area.height(), options.aovs);
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -308,6 +312,9 @@ Picture render(const Scene& scene, const RenderOptions& options) {
         all.tolerance = std::max(all.tolerance, one.tolerance);
         all.certified_error = std::max(all.certified_error, one.certified_error);
         all.triangles += one.triangles;
+        all.leaves += one.leaves;
+        all.rays.rays += one.rays.rays;
+        all.rays.undecided += one.rays.undecided;
         all.seconds_mesh += one.seconds_mesh;
         all.seconds_trace += one.seconds_trace;
     }

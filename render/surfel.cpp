@@ -52,7 +52,7 @@ void frames_of(const TracedScene& scene, const Hit* hits, int n, Vec2* at, Point
         for (int i = first; i < n; ++i) {
             const Thing& thing = scene.things[hits[i].geometry];
             if (thing.patch != patch) continue;
-            at[i] = parameters(*patch, *thing.part, thing.part->triangles[hits[i].primitive], hits[i]);
+            at[i] = thing.mesh ? parameters(*patch, *thing.part, thing.part->triangles[hits[i].primitive], hits[i]) : Vec2{hits[i].u, hits[i].v};
             u[count] = at[i].x, v[count] = at[i].y;
             which[count++] = i;
             done[i] = true;
@@ -64,6 +64,21 @@ void frames_of(const TracedScene& scene, const Hit* hits, int n, Vec2* at, Point
             for (int axis = 0; axis < 3; ++axis)
                 for (int c = 0; c < 3; ++c) frames[which[k]][axis].c[c] = found[3 * c + axis][k];
     }
+}
+
+/// Where the ray met, and the normal that tells front from back.
+struct Met {
+    Point at, outward;
+};
+Met on_triangle(const Thing& thing, const Hit& hit) {
+    const auto& corners = thing.part->triangles[hit.primitive];
+    const auto vertex = [&](int i) -> const Point& { return thing.mesh->positions[thing.part->vertex[corners[i]]]; };
+    const Point e1 = vertex(1) - vertex(0), e2 = vertex(2) - vertex(0);
+    return {vertex(0) + hit.u * e1 + hit.v * e2, normalized(cross(e1, e2))};
+}
+Met on_patch(const Thing& thing, const Ray& ray, const Hit& hit, const Vec2& at, const Point& du, const Point& dv) {
+    const Point n = normal_of(*thing.patch, du, dv, at, -ray.direction);
+    return {ray.origin + hit.distance * ray.direction, thing.flipped ? -n : n};
 }
 
 Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, const Hit& hit, const Vec2& at, const PointFrame& frame) {
@@ -81,14 +96,11 @@ Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, co
         s.color = thing.front;
         return s;
     }
-    const auto& corners = thing.part->triangles[hit.primitive];
-    const auto vertex = [&](int i) -> const Point& { return thing.mesh->positions[thing.part->vertex[corners[i]]]; };
-    const Point e1 = vertex(1) - vertex(0), e2 = vertex(2) - vertex(0), on_mesh = vertex(0) + hit.u * e1 + hit.v * e2;
-    const Point outward = normalized(cross(e1, e2));
+    const Point du = coefficient(frame, 1, 0), dv = coefficient(frame, 0, 1);
+    const auto [on_mesh, outward] = thing.mesh ? on_triangle(thing, hit) : on_patch(thing, ray, hit, at, du, dv);
     const bool toward = dot(outward, s.view) >= 0, front = toward != thing.inside_out;
     const Point geometric = toward ? outward : -outward;
 
-    const Point du = coefficient(frame, 1, 0), dv = coefficient(frame, 0, 1);
     Point position = coefficient(frame, 0, 0);
     if (!finite(position)) position = on_mesh;
     const Point n = normal_of(*thing.patch, du, dv, at, geometric);

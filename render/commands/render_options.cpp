@@ -73,15 +73,25 @@ Metadata metadata_of(const Scene& scene, const Picture& picture) {
     Metadata data{{"Software", "isoparm " ISOPARM_VERSION},
             {"isoparm:scene", std::filesystem::path(scene.path).filename().string()},
             {"isoparm:title", scene.title},
-            {"isoparm:tolerance", to_text(picture.tolerance)},
-            {"isoparm:certified_error", to_text(picture.certified_error)},
-            {"isoparm:triangles", std::to_string(picture.triangles)}};
+            {"isoparm:tolerance", to_text(picture.tolerance)}};
+    if (picture.exact) {
+        data.push_back({"isoparm:exact_rays", std::to_string(picture.rays.rays)});
+        data.push_back({"isoparm:undecided_rays", std::to_string(picture.rays.undecided)});
+    } else {
+        data.push_back({"isoparm:certified_error", to_text(picture.certified_error)});
+        data.push_back({"isoparm:triangles", std::to_string(picture.triangles)});
+    }
     if (!picture.layers.channels.empty()) data.push_back({"isoparm:patches", patch_numbers(scene)});
     return data;
 }
 
 std::string summary_of(const Picture& p) {
-    char text[160];
+    char text[200];
+    if (p.exact) {
+        std::snprintf(text, sizeof text, "%dx%d, exact, %zu leaves, %.2f s; of %llu rays %llu ended undecided (tangent, or at a singular point)", p.image.width, p.image.height,
+                      p.leaves, p.seconds_mesh + p.seconds_trace, static_cast<unsigned long long>(p.rays.rays), static_cast<unsigned long long>(p.rays.undecided));
+        return text;
+    }
     std::snprintf(text, sizeof text, "%dx%d, %zu triangles, certified error %.3g (tolerance %.3g), %.2f s", p.image.width, p.image.height, p.triangles, p.certified_error,
                   p.tolerance, p.seconds_mesh + p.seconds_trace);
     return text;
