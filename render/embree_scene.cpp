@@ -312,18 +312,12 @@ struct EmbreeScene::State {
         rays.fetch_add(n, std::memory_order_relaxed);
         if (const auto some = std::count(open, open + n, true)) undecided.fetch_add(static_cast<std::uint64_t>(some), std::memory_order_relaxed);
     }
-    /// Leaves of a patch, and neighbouring patches, overlap a little.
-    bool same_place_of_patches(const Hit& a, const Hit& b) const {
-        const Geometry &ga = geometries[a.geometry], &gb = geometries[b.geometry];
-        if (!ga.patch || !gb.patch || ga.mesh != gb.mesh || b.distance - a.distance > 1e-8 * radius) return false;
-        if (ga.patch == gb.patch) return ga.patch->near(a.u, a.v, b.u, b.v);
-        return ga.patch->at_border(a.u, a.v) && gb.patch->at_border(b.u, b.v);
-    }
     /// A ray through an edge may meet the triangles on both sides of it: one hit.
     bool same_place(const Hit& a, const Hit& b) const {
-        if (geometries[a.geometry].patch || geometries[b.geometry].patch) return same_place_of_patches(a, b);
         const auto near_edge = [](const Hit& h) { return std::min({h.u, h.v, 1 - h.u - h.v}) < 1e-5; };
         const Geometry &ga = geometries[a.geometry], &gb = geometries[b.geometry];
+        // Leaves of a patch, and neighbouring patches, overlap a little.
+        if (ga.patch || gb.patch) return ga.patch && gb.patch && ga.mesh == gb.mesh && b.distance - a.distance < 1e-8 * radius;
         return !ga.solid && !gb.solid && ga.mesh == gb.mesh && b.distance - a.distance < 1e-6 * radius &&
                near_edge(a) && near_edge(b);
     }

@@ -12,15 +12,15 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRegular = 0.9;       // of |I - Y J|, which must be below 1: far enough from it for rounding not to matter
-constexpr double kFlat = 0.3;          // the same of leaves, seen face on
+constexpr double kFlat = 0.4;          // the same of leaves, seen face on
 constexpr double kLargest = 1.0 / 8;   // half a leaf's side, in sizes of the scene
 constexpr double kSmallest = 5e-4;     // leaves below this are not cut any further before there is a ray
 constexpr double kEdgeOn = 1e-9;       // det / (|a| |b|) below which rounding would count
-constexpr int kDepth = 14;             // bisections of the domain to leaves
+constexpr int kDepth = 12;             // bisections of the domain to leaves
 constexpr int kKept = 20;              // bisections of leaves that are kept for other rays
-constexpr int kPlaces = 400;           // boxes that a ray may look at in one leaf
+constexpr double kSlender = 6;         // sides of a leaf: the longer one is halved beyond this
+constexpr int kPlaces = 200;           // boxes that a ray may look at in one leaf
 constexpr double kPoint = 1e-9;        // boxes of this size, in sizes of the scene, are not halved again
-constexpr double kSame = 1e-7;         // parameters of one place, in widths of the domain
 constexpr int kSteps = 24;
 constexpr double kRounding = 1e-14;    // relative: far above that of a few operations in double
 
@@ -89,7 +89,8 @@ std::array<Box, 2> ExactPatch::halves(const Leaf& leaf) {
     bool along_u = std::isfinite(leaf.bend) ? a >= b : leaf.hu >= leaf.hv;
     if (std::isfinite(leaf.uu) && a > 0 && b > 0) {
         const double by_u = leaf.uu / a + leaf.uv / b, by_v = leaf.vv / b + leaf.uv / a;
-        if (std::max(by_u, by_v) > 1e-2) along_u = by_u > by_v;
+        const bool slender = std::max(a, b) > kSlender * std::min(a, b);  // near a pole, where ranges say little
+        if (std::max(by_u, by_v) > 1e-2 && !slender) along_u = by_u > by_v;
     }
     if (along_u) return {{{part_of(leaf.box.u, false), leaf.box.v}, {part_of(leaf.box.u, true), leaf.box.v}}};
     return {{{leaf.box.u, part_of(leaf.box.v, false)}, {leaf.box.u, part_of(leaf.box.v, true)}}};
@@ -129,16 +130,6 @@ ExactPatch::ExactPatch(const Patch& patch, double size) : patch_(patch), size_(s
     const auto us = patch.lines_u(), vs = patch.lines_v();
     for (std::size_t i = 0; i + 1 < us.size(); ++i)
         for (std::size_t j = 0; j + 1 < vs.size(); ++j) add_leaves({{us[i], us[i + 1]}, {vs[j], vs[j + 1]}}, kDepth);
-}
-
-bool ExactPatch::near(double u0, double v0, double u1, double v1) const {
-    const Rect r = patch_.rect();
-    return std::fabs(u1 - u0) <= kSame * (r.u1 - r.u0) && std::fabs(v1 - v0) <= kSame * (r.v1 - r.v0);
-}
-bool ExactPatch::at_border(double u, double v) const {
-    const Rect r = patch_.rect();
-    const double eu = kSame * (r.u1 - r.u0), ev = kSame * (r.v1 - r.v0);
-    return u - r.u0 <= eu || v - r.v0 <= ev || (patch_.domain() == Domain::triangle ? 1 - u - v <= eu : r.u1 - u <= eu || r.v1 - v <= ev);
 }
 
 // ---- one ray, one leaf ----------------------------------------------------------------------------------------------
@@ -281,12 +272,38 @@ void ExactPatch::search(const Leaf& leaf, const RayPlanes& ray, double farthest,
     }
 }
 
-/// What is left of a search: a hit, though not a proved one, where the middle of the box is as good as on the ray; undecided in any case.
+/// What is left of a search: a hit, though not a proved one, where the patch comes as good as up to the ray in this box; undecided in any
+/// case. Levenberg's and Marquardt's method: there may be no inverse.
 void ExactPatch::settle(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const {
     found.undecided = true;
-    const Point to = patch_.point(leaf.u, leaf.v) - ray.origin;
-    const double off = std::hypot(dot(ray.n1, to), dot(ray.n2, to)), along = dot(ray.direction, to);
-    if (off <= 4 * kPoint * size_ && along >= 0 && along <= farthest && found.count < Roots::most) found.root[found.count++] = {along, leaf.u, leaf.v, kInfinity};
+    double x = 0, y = 0, best = kInfinity, damping = 1e-6;
+    Root root;
+    root.error = kInfinity;
+    Point du, dv, best_to;
+    for (int step = 0; step < kSteps && damping < 1e6; ++step) {
+        double cx = 0, cy = 0;
+        const Vec2 p = place(leaf, x, y, cx, cy);
+        const PointFrame f = patch_.frame(p.x, p.y);
+        const Point to = Point{f.x.c[0], f.y.c[0], f.z.c[0]} - ray.origin;
+        const double off = std::hypot(dot(ray.n1, to), dot(ray.n2, to));
+        if (off < best) {
+            best = off, best_to = to, damping *= 0.1;
+            root.u = p.x, root.v = p.y, root.distance = dot(ray.direction, to);
+            du = leaf.hu * Point{f.x.c[1], f.y.c[1], f.z.c[1]}, dv = leaf.hv * Point{f.x.c[2], f.y.c[2], f.z.c[2]};
+        } else {
+            damping *= 10;
+        }
+        const double f1 = dot(ray.n1, best_to), f2 = dot(ray.n2, best_to), a1 = dot(ray.n1, du), a2 = dot(ray.n2, du), b1 = dot(ray.n1, dv), b2 = dot(ray.n2, dv);
+        const double add = damping * (a1 * a1 + a2 * a2 + b1 * b1 + b2 * b2), aa = a1 * a1 + a2 * a2 + add, bb = b1 * b1 + b2 * b2 + add, ab = a1 * b1 + a2 * b2;
+        const double af = a1 * f1 + a2 * f2, bf = b1 * f1 + b2 * f2, det = aa * bb - ab * ab;
+        if (!(det > 0) || !std::isfinite(af + bf + det)) break;
+        x = std::clamp((root.u - leaf.u) / leaf.hu - (bb * af - ab * bf) / det, -1.0, 1.0);
+        y = std::clamp((root.v - leaf.v) / leaf.hv - (aa * bf - ab * af) / det, -1.0, 1.0);
+    }
+    if (!(best <= 4 * kPoint * size_) || root.distance < 0 || root.distance > farthest || found.count == Roots::most) return;
+    for (int k = 0; k < found.count; ++k)
+        if (std::fabs(found.root[k].distance - root.distance) <= 1e2 * kPoint * size_) return;
+    found.root[found.count++] = root;
 }
 
 void ExactPatch::meet(std::size_t which, const RayPlanes* const* rays, const double* farthest, int n, Roots* found) const {

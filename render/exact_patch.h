@@ -55,9 +55,6 @@ public:
     Bounds box(std::size_t leaf) const { return leaves_[leaf].values; }
     /// Where n <= packet rays meet a leaf, at distances from 0 to farthest[i].
     void meet(std::size_t leaf, const RayPlanes* const* rays, const double* farthest, int n, Roots* found) const;
-    /// Are these parameters the same place, up to rounding? Is it on the border of the domain?
-    bool near(double u0, double v0, double u1, double v1) const;
-    bool at_border(double u, double v) const;
 
 private:
     /// S(u + x hu, v + y hv) = s + a x + b y, up to `bend`, for -1 <= x, y <= 1 in the domain.
