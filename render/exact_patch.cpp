@@ -17,7 +17,8 @@ constexpr double kLargest = 1.0 / 8;   // half a leaf's side, in sizes of the sc
 constexpr double kSmallest = 5e-4;     // leaves below this are not cut any further before there is a ray
 constexpr double kEdgeOn = 1e-9;       // det / (|a| |b|) below which rounding would count
 constexpr int kDepth = 12;             // bisections of the domain to leaves
-constexpr int kKept = 20;              // bisections of leaves that are kept for other rays
+constexpr int kKept = 20;              // bisections of leaves that are kept for other rays,
+constexpr std::size_t kMostKept = 100'000;  // and how many of a patch: 30 MB
 constexpr double kSlender = 6;         // sides of a leaf: the longer one is halved beyond this
 constexpr int kPlaces = 200;           // boxes that a ray may look at in one leaf
 constexpr double kPoint = 1e-9;        // boxes of this size, in sizes of the scene, are not halved again
@@ -104,7 +105,7 @@ const ExactPatch::Leaf* ExactPatch::half_of(const Leaf& leaf, int k, std::vector
     auto made = std::make_unique<Leaf>();
     set(*made, box);
     made->depth = leaf.depth + 1;
-    if (made->depth > kKept) return kept.emplace_back(std::move(made)).get();
+    if (made->depth > kKept || kept_.fetch_add(1, std::memory_order_relaxed) >= kMostKept) return kept.emplace_back(std::move(made)).get();
     const Leaf* none = nullptr;
     if (known.compare_exchange_strong(none, made.get(), std::memory_order_acq_rel, std::memory_order_acquire)) return made.release();
     return none;  // another thread was faster, with the same numbers

@@ -100,6 +100,7 @@ private:
     Patch patch_;
     double size_, slack_;
     std::deque<Leaf> leaves_;
+    mutable std::atomic<std::size_t> kept_{0};  // halves
 };
 
 }  // namespace isoparm
