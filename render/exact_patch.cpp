@@ -255,7 +255,7 @@ void ExactPatch::search(const Leaf& leaf, const RayPlanes& ray, double farthest,
     for (int places = 0; !open.empty();) {
         const Leaf& at = *open.back();
         open.pop_back();
-        if (places > kPlaces || (std::isfinite(at.bend) && length(at.a) + length(at.b) + at.bend < kPoint * size_) ||
+        if (places > kPlaces || (std::isfinite(at.bend) && length(at.a) + length(at.b) + at.bend < kPoint * size_) || length(at.a) + length(at.b) < 1e-12 * length(at.s) ||
             std::max(at.hu, at.hv) < 1e-15 * std::max({1.0, std::fabs(at.u), std::fabs(at.v)})) {
             settle(at, ray, farthest, found);
             continue;
