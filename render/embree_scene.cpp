@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -43,6 +44,19 @@ struct Geometry {
     std::uint32_t mesh = 0;  // number of the mesh it is a part of; meaningless for others
     float opacity = 1;
     bool solid = false;  // a tube or ball: counts once however often a ray passes through its skin
+    const ExactPatch* patch = nullptr;  // rays meet it itself; mesh is then its group
+    const Point* centre = nullptr;
+    const double* radius = nullptr;  // of the scene, once it is complete
+};
+
+/// What queries tell the callbacks of patches, which compute in double.
+/// There is one of each for every ray of the query.
+struct PatchRays {
+    const RayPlanes* planes = nullptr;
+    Hit* nearest = nullptr;               // of patches
+    bool* undecided = nullptr;
+    std::vector<Hit>* layers = nullptr;   // where hits of what lets light through go; otherwise they count as any other
+    double* transmittance = nullptr;      // of a single shadow ray
 };
 
 // ---- Embree 3 and 4 ask the same questions with different words ---------------------------------------------------
@@ -50,6 +64,7 @@ struct Geometry {
 using Context = RTCRayQueryContext;
 struct Query {
     Context context;  // first: filters find the query by its address
+    PatchRays* patches = nullptr;
     RTCIntersectArguments nearest;
     RTCOccludedArguments any;
     explicit Query(bool coherent = false) {
@@ -68,6 +83,7 @@ void occluded_16(const int* valid, RTCScene s, Query& q, RTCRay16* r) { rtcOcclu
 using Context = RTCIntersectContext;
 struct Query {
     Context context;
+    PatchRays* patches = nullptr;
     explicit Query(bool coherent = false) {
         rtcInitIntersectContext(&context);
         if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -86,6 +102,13 @@ struct ShadowQuery : Query {
     double transmittance = 1;
     std::vector<std::uint32_t> solids;
 };
+
+/// A sheet that lets light through throws a lighter shadow than its opacity asks for, as coloured glass does: sheets under sheets keep
+/// their colours. Opaque sheets throw a full one.
+double sheet_lets_through(const Geometry& geometry) {
+    const double o = geometry.opacity;
+    return 1 - o * o * o;
+}
 
 // The two filters refuse every hit of geometry that lets light through, so that Embree goes on to the next; they are
 // called for single rays only.
@@ -112,10 +135,106 @@ void dim_light(const RTCFilterFunctionNArguments* a) {
         query.transmittance *= 1 - static_cast<double>(geometry.opacity);
         return;
     }
-    // A sheet that lets light through throws a lighter shadow than its opacity asks for, as coloured glass does: sheets
-    // under sheets keep their colours. Opaque sheets throw a full one.
-    const double o = geometry.opacity;
-    query.transmittance *= 1 - o * o * o;
+    query.transmittance *= sheet_lets_through(geometry);
+}
+
+/// Normal numbers again, for proofs.
+class KeepSubnormals {
+#if defined(__SSE__)
+public:
+    KeepSubnormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ & ~0x8040u); }
+    ~KeepSubnormals() { _mm_setcsr(before_); }
+
+private:
+    unsigned before_;
+#else
+public:
+    KeepSubnormals() {}
+#endif
+};
+
+/// The least float that is not below x, and one more: what is as near as x must not be passed over.
+float far_enough(double x) {
+    const float most = std::numeric_limits<float>::infinity();
+    return std::nextafter(std::nextafter(static_cast<float>(x), most), most);
+}
+
+/// Rays of a callback in one leaf of a patch.
+struct Meeting {
+    int lane[EmbreeScene::packet];    // of the callback
+    unsigned ray[EmbreeScene::packet];  // of the query
+    Roots roots[EmbreeScene::packet];
+    int count = 0;
+
+    Meeting(const int* valid, RTCRayN* rays, unsigned n, const ExactPatch& patch, unsigned leaf, PatchRays& query) {
+        const RayPlanes* planes[EmbreeScene::packet];
+        double farthest[EmbreeScene::packet];
+        for (unsigned i = 0; i < n; ++i) {
+            if (!valid[i]) continue;
+            lane[count] = static_cast<int>(i), ray[count] = RTCRayN_id(rays, n, i);
+            planes[count] = &query.planes[ray[count]];
+            farthest[count++] = RTCRayN_tfar(rays, n, i);
+        }
+        const KeepSubnormals keep;
+        patch.meet(leaf, planes, farthest, count, roots);
+        for (int k = 0; k < count; ++k) query.undecided[ray[k]] = query.undecided[ray[k]] || roots[k].undecided;
+    }
+};
+
+Hit hit_of(const Root& root, std::uint32_t geometry, std::uint32_t leaf) {
+    Hit h;
+    h.distance = root.distance, h.u = root.u, h.v = root.v, h.error = root.error;
+    h.geometry = geometry, h.primitive = leaf;
+    return h;
+}
+bool nearer(const Hit& a, const Hit& b) { return std::tie(a.distance, a.geometry, a.primitive) < std::tie(b.distance, b.geometry, b.primitive); }
+
+void bounds_of_leaf(const RTCBoundsFunctionArguments* a) {
+    const auto& geometry = *static_cast<const Geometry*>(a->geometryUserPtr);
+    // Rays are rounded to float32 where they enter the scene, by half a unit in the last place of 1.01 radii and of their direction over 2.02
+    // radii; so is the box. Embree's own slab test is conservative (RTC_SCENE_FLAG_ROBUST).
+    const double pad = 0x1p-21 * *geometry.radius;
+    const Bounds box = geometry.patch->box(a->primID);
+    const Point low = box.low - *geometry.centre, high = box.high - *geometry.centre;
+    RTCBounds& out = *a->bounds_o;
+    out.lower_x = static_cast<float>(low.x - pad), out.lower_y = static_cast<float>(low.y - pad), out.lower_z = static_cast<float>(low.z - pad);
+    out.upper_x = static_cast<float>(high.x + pad), out.upper_y = static_cast<float>(high.y + pad), out.upper_z = static_cast<float>(high.z + pad);
+    out.align0 = out.align1 = 0;
+}
+
+void intersect_leaf(const RTCIntersectFunctionNArguments* a) {
+    auto& query = *reinterpret_cast<Query*>(a->context);
+    const auto& geometry = *static_cast<const Geometry*>(a->geometryUserPtr);
+    RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
+    RTCHitN* hits = RTCRayHitN_HitN(a->rayhit, a->N);
+    const Meeting met(a->valid, rays, a->N, *geometry.patch, a->primID, *query.patches);
+    for (int k = 0; k < met.count; ++k)
+        for (int r = 0; r < met.roots[k].count; ++r) {
+            const Hit hit = hit_of(met.roots[k].root[r], geometry.id, a->primID);
+            const auto lane = static_cast<unsigned>(met.lane[k]);
+            if (geometry.opacity < 1 && query.patches->layers) {
+                query.patches->layers->push_back(hit);
+                continue;
+            }
+            Hit& nearest = query.patches->nearest[met.ray[k]];
+            float& far = RTCRayN_tfar(rays, a->N, lane);
+            if (hit.distance > static_cast<double>(far) || !nearer(hit, nearest)) continue;
+            nearest = hit;
+            far = std::min(far, far_enough(hit.distance));
+            RTCHitN_geomID(hits, a->N, lane) = geometry.id;
+            RTCHitN_primID(hits, a->N, lane) = a->primID;
+        }
+}
+
+void shadow_of_leaf(const RTCOccludedFunctionNArguments* a) {
+    auto& query = *reinterpret_cast<Query*>(a->context);
+    const auto& geometry = *static_cast<const Geometry*>(a->geometryUserPtr);
+    const Meeting met(a->valid, a->ray, a->N, *geometry.patch, a->primID, *query.patches);
+    for (int k = 0; k < met.count; ++k)
+        for (int r = 0; r < met.roots[k].count; ++r) {
+            if (geometry.opacity < 1) *query.patches->transmittance *= sheet_lets_through(geometry);
+            else RTCRayN_tfar(a->ray, a->N, static_cast<unsigned>(met.lane[k])) = -std::numeric_limits<float>::infinity();
+        }
 }
 
 }  // namespace
@@ -126,6 +245,8 @@ struct EmbreeScene::State {
     Point centre;
     double radius = 0, rounding = 0;
     bool translucent = false;
+    bool patches = false;  // rays meet some patch itself
+    mutable std::atomic<std::uint64_t> rays{0}, undecided{0};
     std::deque<Geometry> geometries;        // Embree keeps pointers to them
     std::deque<std::vector<float>> shared;  // vertices that Embree reads in place
 
@@ -183,20 +304,38 @@ struct EmbreeScene::State {
         r.org_x[i] = one.org_x, r.org_y[i] = one.org_y, r.org_z[i] = one.org_z;
         r.dir_x[i] = one.dir_x, r.dir_y[i] = one.dir_y, r.dir_z[i] = one.dir_z;
         r.tnear[i] = one.tnear, r.tfar[i] = one.tfar, r.time[i] = 0;
-        r.mask[i] = one.mask, r.id[i] = 0, r.flags[i] = 0;
+        r.mask[i] = one.mask, r.id[i] = static_cast<unsigned>(i), r.flags[i] = 0;
+    }
+    /// Adds to count().
+    void note(const bool* open, std::uint64_t n) const {
+        if (!patches) return;
+        rays.fetch_add(n, std::memory_order_relaxed);
+        if (const auto some = std::count(open, open + n, true)) undecided.fetch_add(static_cast<std::uint64_t>(some), std::memory_order_relaxed);
     }
     /// A ray through an edge may meet the triangles on both sides of it: one hit.
     bool same_place(const Hit& a, const Hit& b) const {
         const auto near_edge = [](const Hit& h) { return std::min({h.u, h.v, 1 - h.u - h.v}) < 1e-5; };
         const Geometry &ga = geometries[a.geometry], &gb = geometries[b.geometry];
+        // Leaves of a patch, and neighbouring patches, overlap a little.
+        if (ga.patch || gb.patch) return ga.patch && gb.patch && ga.mesh == gb.mesh && b.distance - a.distance < 1e-8 * radius;
         return !ga.solid && !gb.solid && ga.mesh == gb.mesh && b.distance - a.distance < 1e-6 * radius &&
                near_edge(a) && near_edge(b);
     }
     double transmittance(const Ray& ray) const {
         ShadowQuery query;
         RTCRay r;
-        fill(ray, entry(ray), r);
+        const double start = entry(ray);
+        fill(ray, start, r);
+        bool open = false;
+        PatchRays to_patches;
+        RayPlanes planes;
+        if (patches) {
+            planes = RayPlanes({ray.origin + start * ray.direction, ray.direction});
+            to_patches.planes = &planes, to_patches.undecided = &open, to_patches.transmittance = &query.transmittance;
+            query.patches = &to_patches;
+        }
         occluded_1(scene, query, &r);
+        note(&open, 1);
         return r.tfar < 0 ? 0 : query.transmittance;
     }
 };
@@ -235,6 +374,28 @@ std::uint32_t EmbreeScene::add_mesh(const Mesh& mesh, double opacity) {
     }
     return first;
 }
+
+std::uint32_t EmbreeScene::add_patch(const ExactPatch& patch, std::uint32_t group, double opacity) {
+    State& s = *state_;
+    for (std::size_t i = 0; i < patch.leaves(); ++i)
+        for (const Point& p : {patch.box(i).low, patch.box(i).high}) s.radius = std::max(s.radius, length(p - s.centre));
+    s.patches = true;
+    s.translucent = s.translucent || opacity < 1;
+    RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_USER);
+    Geometry& data = s.geometries.emplace_back(Geometry{0, group, static_cast<float>(opacity), false, &patch, &s.centre, &s.radius});
+    rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(patch.leaves()));
+    rtcSetGeometryUserData(g, &data);
+    rtcSetGeometryBoundsFunction(g, bounds_of_leaf, nullptr);
+    rtcSetGeometryIntersectFunction(g, intersect_leaf);
+    rtcSetGeometryOccludedFunction(g, shadow_of_leaf);
+    rtcCommitGeometry(g);
+    data.id = rtcAttachGeometry(s.scene, g);
+    rtcReleaseGeometry(g);
+    s.check("taking over a patch");
+    return data.id;
+}
+
+EmbreeScene::Count EmbreeScene::count() const { return {state_->rays, state_->undecided}; }
 
 std::uint32_t EmbreeScene::add_tubes(const std::vector<std::array<Point, 4>>& pieces, double radius, double opacity) {
     State& s = *state_;
@@ -290,14 +451,28 @@ void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
         r.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
+    RayPlanes planes[packet];
+    Hit nearest[packet];
+    bool open[packet] = {};
+    PatchRays to_patches{planes, nearest, open};
+    Query query(true);
+    if (s.patches) {
+        for (int i = 0; i < n; ++i) planes[i] = RayPlanes({rays[i].origin + start[i] * rays[i].direction, rays[i].direction});
+        query.patches = &to_patches;
+    }
     {
-        Query query(true);
         const FlushSubnormals flush;
         intersect_16(valid, s.scene, query, &r);
     }
+    s.note(open, static_cast<std::uint64_t>(n));
     for (int i = 0; i < n; ++i) {
         Hit& h = hits[i] = Hit{};
         if (r.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+        if (s.geometries[r.hit.geomID[i]].patch) {
+            h = nearest[i];
+            h.distance += start[i];
+            continue;
+        }
         h.distance = start[i] + static_cast<double>(r.ray.tfar[i]);
         h.geometry = r.hit.geomID[i];
         h.primitive = r.hit.primID[i];
@@ -305,6 +480,17 @@ void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
         h.v = r.hit.v[i];
         h.normal = {r.hit.Ng_x[i], r.hit.Ng_y[i], r.hit.Ng_z[i]};
     }
+}
+
+Hit EmbreeScene::first(const Ray& ray) const {
+    if (state_->translucent) {
+        std::vector<Hit> hits;
+        layers(ray, hits);
+        return hits.empty() ? Hit{} : hits.front();
+    }
+    Hit hit;
+    intersect(&ray, 1, &hit);
+    return hit;
 }
 
 void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
@@ -317,11 +503,24 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
     s.fill(ray, start, r.ray);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    Hit nearest;
+    bool open = false;
+    PatchRays to_patches;
+    RayPlanes planes;
+    if (s.patches) {
+        planes = RayPlanes({ray.origin + start * ray.direction, ray.direction});
+        to_patches.planes = &planes, to_patches.nearest = &nearest, to_patches.undecided = &open, to_patches.layers = &hits;
+        query.patches = &to_patches;
+    }
     {
         const FlushSubnormals flush;
         intersect_1(s.scene, query, &r);
     }
-    if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
+    s.note(&open, 1);
+    if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID && s.geometries[r.hit.geomID].patch) {
+        std::erase_if(hits, [&](const Hit& h) { return h.distance > nearest.distance; });
+        hits.push_back(nearest);
+    } else if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
         std::erase_if(hits, [&](const Hit& h) { return h.distance > static_cast<double>(r.ray.tfar); });
         Hit h;
         h.distance = r.ray.tfar;
@@ -364,7 +563,18 @@ void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, do
         s.fill(ray, s.entry(ray), r, i);
     }
     Query query;
+    RayPlanes planes[packet];
+    bool open[packet] = {};
+    PatchRays to_patches{planes, nullptr, open};
+    if (s.patches) {
+        for (int i = 0; i < packet; ++i) {
+            const Ray& ray = rays[valid[i] ? i : std::countr_zero(active)];
+            planes[i] = RayPlanes({ray.origin + s.entry(ray) * ray.direction, ray.direction});
+        }
+        query.patches = &to_patches;
+    }
     occluded_16(valid, s.scene, query, &r);
+    s.note(open, static_cast<std::uint64_t>(std::popcount(active)));
     for (int i = 0; i < n; ++i)
         if (valid[i] && r.tfar[i] < 0) result[i] = 0;
 }

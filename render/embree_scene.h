@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "camera.h"
+#include "exact_patch.h"
 #include "mesh.h"
 
 namespace isoparm {
@@ -19,8 +20,9 @@ struct Hit {
     static constexpr std::uint32_t none = ~0u;
     double distance = std::numeric_limits<double>::infinity();
     std::uint32_t geometry = none, primitive = 0;
-    double u = 0, v = 0;  // of triangles: weights of corners 1 and 2
-    Point normal;         // geometric, outward, not of unit length
+    double u = 0, v = 0;  // of triangles: weights of corners 1 and 2; of patches: parameters
+    Point normal;         // geometric, outward, not of unit length; not of patches
+    double error = 0;     // of patches: Root::error
     bool found() const { return geometry != none; }
 };
 
@@ -36,6 +38,8 @@ public:
     /// One geometry a part, numbered one after the other; returns the first. All parts share the vertices, so that rays
     /// do not slip through between them.
     std::uint32_t add_mesh(const Mesh& mesh, double opacity);
+    /// The patch itself, which must live as long; its neighbours are those of the same `group`.
+    std::uint32_t add_patch(const ExactPatch& patch, std::uint32_t group, double opacity);
     /// Round tubes about cubic Bezier curves; returns the geometry's number.
     std::uint32_t add_tubes(const std::vector<std::array<Point, 4>>& pieces, double radius, double opacity);
     std::uint32_t add_balls(const std::vector<Point>& centres, double radius, double opacity);
@@ -49,8 +53,16 @@ public:
     /// Largest distance between a vertex as given and as stored.
     double rounding() const;
 
+    /// Rays against patches so far, and how they ended.
+    struct Count {
+        std::uint64_t rays = 0, undecided = 0;
+    };
+    Count count() const;
+
     /// The nearest hit of each of n <= packet rays, whatever its opacity.
     void intersect(const Ray* rays, int n, Hit* hits) const;
+    /// The nearest hit of one ray, whatever its opacity.
+    Hit first(const Ray& ray) const;
     /// Every hit from the nearest to the first opaque one, in order. A tube or ball that lets light through counts
     /// once.
     void layers(const Ray& ray, std::vector<Hit>& hits) const;

@@ -84,9 +84,12 @@ std::vector<float> without_alpha(const Image& image) {
 }
 
 void write_file(const std::string& path, const std::string& file, const Format& format, const Image& image,
-                const Metadata& metadata) {
+                const Layers& layers, const Metadata& metadata) {
     const bool with_alpha = format.alpha && !opaque(image);
-    IsoparmImagePixels pixels{image.width, image.height, with_alpha ? 4 : 3, format.linear, nullptr};
+    std::vector<const char*> channels;
+    for (const std::string& c : layers.channels) channels.push_back(c.c_str());
+    IsoparmImagePixels pixels{image.width, image.height, with_alpha ? 4 : 3, format.linear, nullptr,
+                              static_cast<int>(channels.size()), channels.data(), layers.values.data()};
     std::vector<std::uint8_t> bytes;
     std::vector<float> rgb;
     if (!format.linear)
@@ -136,10 +139,14 @@ void check_image_path(const std::string& path) {
         throw Error(ErrorKind::io, path + ": there is no folder " + folder.string());
 }
 
-void write_image(const std::string& path, const Image& image, const Metadata& metadata) {
+bool holds_layers(const std::string& path) { return format_of(path).linear; }
+
+void write_image(const std::string& path, const Image& image, const Layers& layers, const Metadata& metadata) {
     const Format& format = format_of(path);
-    write_atomically_by_name(path, [&](const std::string& file) { write_file(path, file, format, image, metadata); });
+    if (!layers.channels.empty() && !format.linear) throw Error(ErrorKind::usage, path + ": only .exr holds further channels");
+    write_atomically_by_name(path, [&](const std::string& file) { write_file(path, file, format, image, layers, metadata); });
 }
+void write_image(const std::string& path, const Image& image, const Metadata& metadata) { write_image(path, image, {}, metadata); }
 
 Image read_image(const std::string& path) {
     Image image;

@@ -22,6 +22,17 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 /// lines: the same picture gives the same bytes. Throws Error(io), or Error(usage) for an unknown extension.
 void write_image(const std::string& path, const Image& image, const Metadata& metadata);
 
+/// Further channels of a picture's pixels: float32, rows from the top, each pixel's side by side.
+struct Layers {
+    std::vector<std::string> channels;  // "N.X"; the part before the dot is the layer
+    std::vector<float> values;
+};
+/// An OpenEXR file of one part: the colours as write_image() has them, then the layers. Throws Error(io), or Error(usage) for
+/// another extension.
+void write_image(const std::string& path, const Image& image, const Layers& layers, const Metadata& metadata);
+/// Is this the path of a file that holds layers?
+bool holds_layers(const std::string& path);
+
 /// Throws what write_image() would for the extension or a missing folder: before hours of rendering, not after.
 void check_image_path(const std::string& path);
 

@@ -13,6 +13,10 @@ struct IsoparmImagePixels {
     int width, height, channels;
     int half;
     const void* data;
+    /// Further channels, with half floats only: float32, interleaved; `layer_names` has one name each.
+    int layers;
+    const char* const* layer_names;
+    const float* layer_data;
 };
 
 /// Writes `file` in the format of its extension and reads it back; `lossy` formats need only come back in the same
@@ -20,7 +24,7 @@ struct IsoparmImagePixels {
 int isoparm_image_write(const char* file, const IsoparmImagePixels* pixels, int lossy, const char* const* names,
                         const char* const* values, int metadata, IsoparmImageError* error);
 
-/// Calls `sink` with all channels as floats, unassociated alpha where the format has that, and the bytes flag when the
+/// Calls `sink` with all channels as floats (of more than four: R, G, B and A only), unassociated alpha where the format has that, and the bytes flag when the
 /// file holds integers. Returns 0 or fills `error`.
 typedef void (*IsoparmImageSink)(void* user, int width, int height, int channels, int integers, const float* data);
 int isoparm_image_read(const char* file, IsoparmImageSink sink, void* user, IsoparmImageError* error);

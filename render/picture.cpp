@@ -34,14 +34,40 @@ struct Rgba {
     }
 };
 
+/// Variance of colours, about the first of them, so that equal ones have none.
+class Spread {
+public:
+    void add(const Color& c) {
+        if (n_++ == 0) first_ = c;
+        const Color d = c - first_;
+        sum_ += d;
+        squares_ += Color{d.x * d.x, d.y * d.y, d.z * d.z};
+    }
+    Color variance() const {
+        const auto one = [&](double sum, double squares) { return n_ < 2 ? 0 : std::max(0.0, (squares - sum * sum / n_) / (n_ - 1)); };
+        return {one(sum_.x, squares_.x), one(sum_.y, squares_.y), one(sum_.z, squares_.z)};
+    }
+
+private:
+    Color first_, sum_, squares_;
+    int n_ = 0;
+};
+
+/// What the samples of a pixel come to.
+struct Samples {
+    Rgba sum;
+    Spread spread;
+};
+
 class Tracer {
 public:
-    Tracer(const TracedScene& scene, const Camera& camera, int samples)
-        : scene_(scene), camera_(camera), lighting_(camera), samples_(samples) {}
+    Tracer(const TracedScene& scene, const Camera& camera, int samples, const std::optional<Color>& background)
+        : scene_(scene), camera_(camera), lighting_(camera), samples_(samples), background_(background) {}
 
-    Rgba pixel(int x, int y) const {
+    /// The mean of the samples, and the variance of each.
+    Samples pixel(int x, int y) const {
         const PixelSampler sampler(x, y, samples_);
-        Rgba sum;
+        Samples all;
         for (int first = 0; first < samples_; first += EmbreeScene::packet) {
             Ray rays[EmbreeScene::packet];
             const int n = std::min(EmbreeScene::packet, samples_ - first);
@@ -50,11 +76,13 @@ public:
                 rays[i] = camera_.ray(x + 0.5 + at.x, y + 0.5 + at.y);
             }
             if (scene_.embree->translucent())
-                add_layers(sampler, rays, first, n, sum);
+                add_layers(sampler, rays, first, n, all);
             else
-                add_nearest(sampler, rays, first, n, sum);
+                add_nearest(sampler, rays, first, n, all);
         }
-        return {sum.color / double(samples_), sum.alpha / samples_};
+        all.sum = {all.sum.color / double(samples_), all.sum.alpha / samples_};
+        if (background_) all.sum.add_behind(*background_, 1);
+        return all;
     }
 
 private:
@@ -63,25 +91,25 @@ private:
         Hit hit;
         int ray, layer;
     };
-    void add_nearest(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba& sum) const {
+    void add_nearest(const PixelSampler& sampler, const Ray* rays, int first, int n, Samples& all) const {
         Hit hits[EmbreeScene::packet];
         scene_.embree->intersect(rays, n, hits);
         std::vector<Met> met;
         for (int i = 0; i < n; ++i)
             if (hits[i].found()) met.push_back({hits[i], i, 0});
-        add_light(sampler, rays, first, n, met, sum);
+        add_light(sampler, rays, first, n, met, all);
     }
-    void add_layers(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba& sum) const {
+    void add_layers(const PixelSampler& sampler, const Ray* rays, int first, int n, Samples& all) const {
         std::vector<Hit> hits;
         std::vector<Met> met;
         for (int i = 0; i < n; ++i) {
             scene_.embree->layers(rays[i], hits);
             for (std::size_t k = 0; k < hits.size(); ++k) met.push_back({hits[k], i, static_cast<int>(k)});
         }
-        add_light(sampler, rays, first, n, met, sum);
+        add_light(sampler, rays, first, n, met, all);
     }
     /// Layers of a ray come from front to back.
-    void add_light(const PixelSampler& sampler, const Ray* rays, int first, int n, const std::vector<Met>& met, Rgba& sum) const {
+    void add_light(const PixelSampler& sampler, const Ray* rays, int first, int n, const std::vector<Met>& met, Samples& all) const {
         Rgba seen[EmbreeScene::packet];
         for (std::size_t begin = 0; begin < met.size(); begin += EmbreeScene::packet) {
             const int count = static_cast<int>(std::min<std::size_t>(EmbreeScene::packet, met.size() - begin));
@@ -99,8 +127,10 @@ private:
             for (int k = 0; k < count; ++k) add(surfels[k], light[k], seen[met[begin + k].ray]);
         }
         for (int i = 0; i < n; ++i) {
-            sum.color += seen[i].color;
-            sum.alpha += seen[i].alpha;
+            all.sum.color += seen[i].color;
+            all.sum.alpha += seen[i].alpha;
+            if (background_) seen[i].add_behind(*background_, 1);
+            all.spread.add(seen[i].color);
         }
     }
 
@@ -114,6 +144,7 @@ private:
     Lighting lighting_;
     PixelFilter filter_;
     int samples_;
+    std::optional<Color> background_;
 };
 
 struct Area {
@@ -123,8 +154,8 @@ struct Area {
 };
 
 /// Calls `progress` from the calling thread only, which works on tiles like the others.
-void trace(const Tracer& tracer, const Area& area, const std::optional<Color>& background,
-           const std::function<void(double)>& progress, Image& image) {
+void trace(const Tracer& tracer, const AovReader& aovs, const Area& area, const std::function<void(double)>& progress,
+           Picture& picture) {
     const int across = (area.width() + kTile - 1) / kTile, tiles = across * ((area.height() + kTile - 1) / kTile);
     const auto caller = std::this_thread::get_id();
     std::atomic<int> done{0};
@@ -132,11 +163,12 @@ void trace(const Tracer& tracer, const Area& area, const std::optional<Color>& b
         const int x0 = area.x0 + kTile * (tile % across), y0 = area.y0 + kTile * (tile / across);
         for (int y = y0; y < std::min(y0 + kTile, area.y1); ++y)
             for (int x = x0; x < std::min(x0 + kTile, area.x1); ++x) {
-                Rgba p = tracer.pixel(x, y);
-                if (background) p.add_behind(*background, 1);
-                float* out = image.at(x - area.x0, y - area.y0);
-                for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(p.color[k]);
-                out[3] = background ? 1.0f : static_cast<float>(p.alpha);
+                const Samples p = tracer.pixel(x, y);
+                float* out = picture.image.at(x - area.x0, y - area.y0);
+                for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(p.sum.color[k]);
+                out[3] = static_cast<float>(p.sum.alpha);
+                const std::size_t pixel = static_cast<std::size_t>(y - area.y0) * area.width() + (x - area.x0);
+                if (aovs.channels() > 0) aovs.read(x, y, p.spread.variance(), &picture.layers.values[pixel * aovs.channels()]);
             }
         const int now = ++done;
         if (progress && std::this_thread::get_id() == caller) progress(static_cast<double>(now) / tiles);
@@ -178,6 +210,14 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// All pixels as where nothing is.
+Layers blank_layers(int width, int height, const std::vector<Aov>& aovs) {
+    Layers layers{channels_of(aovs), {}};
+    const auto pixel = empty_pixel(aovs);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(width) * height; ++i) layers.values.insert(layers.values.end(), pixel.begin(), pixel.end());
+    return layers;
+}
+
 Image blank(int width, int height, const std::optional<Color>& background) {
     Image image{width, height, {}};
     image.pixels.resize(4 * static_cast<std::size_t>(width) * height);
@@ -191,6 +231,8 @@ struct Quality {
     int samples;
     Tolerance tolerance;
     double pixel;  // pixels of this picture to one of the scene's
+    std::vector<Aov> aovs;
+    bool exact;
 };
 
 /// The part `area` of a view, in the view's own pixels.
@@ -205,16 +247,19 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     Picture picture;
     picture.tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
     auto start = std::chrono::steady_clock::now();
-    TracedScene traced = build_traced_scene(scene, view.objects, picture.tolerance, part_of_progress(0, kMeshShare));
+    TracedScene traced = build_traced_scene(scene, view.objects, picture.tolerance, part_of_progress(0, kMeshShare), how.exact);
     for (Thing& thing : traced.things) thing.isolines.width *= how.pixel;
     picture.certified_error = traced.certified_error;
     picture.triangles = traced.triangles;
+    for (const ExactPatch& p : traced.patches) picture.leaves += p.leaves();
     picture.seconds_mesh = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
     picture.image = blank(area.width(), area.height(), {});
-    trace(Tracer(traced, camera, how.samples), area, scene.image.background,
-          part_of_progress(kMeshShare, 1 - kMeshShare), picture.image);
+    picture.layers = blank_layers(area.width(), area.height(), how.aovs);
+    trace(Tracer(traced, camera, how.samples, scene.image.background), AovReader(scene, traced, camera, how.aovs), area,
+          part_of_progress(kMeshShare, 1 - kMeshShare), picture);
+    picture.rays = traced.embree->count();
     paint(overlay(scene, view.objects, traced, camera, how.pixel, view.letter), area.x0, area.y0, picture.image);
     picture.seconds_trace = seconds_since(start);
     return picture;
@@ -228,6 +273,13 @@ void paste(const Image& part, int x0, int y0, Image& whole) {
     for (int y = 0; y < part.height; ++y)
         std::copy_n(part.at(0, y), 4 * static_cast<std::size_t>(part.width), whole.at(x0, y0 + y));
 }
+void paste(const Picture& part, int x0, int y0, Picture& whole) {
+    paste(part.image, x0, y0, whole.image);
+    const std::size_t channels = part.layers.channels.size(), row = channels * part.image.width;
+    for (int y = 0; y < part.image.height; ++y)
+        std::copy_n(part.layers.values.data() + y * row, row,
+                    whole.layers.values.data() + channels * (static_cast<std::size_t>(y0 + y) * whole.image.width + x0));
+}
 
 }  // namespace
 
@@ -237,11 +289,13 @@ Picture render(const Scene& scene, const RenderOptions& options) {
     const Area area = checked_area(options, width, height);
     const Quality how{
         checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples),
-        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height};
+        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs, options.exact};
     double reached = 0;  // progress never runs backwards, whatever its parts report
     const auto views = views_of(scene, width, height, options.also_fit);
     Picture all;
+    all.exact = options.exact;
     all.image = blank(area.width(), area.height(), scene.image.background);
+    all.layers = blank_layers(area.width(), area.height(), options.aovs);
     for (std::size_t i = 0; i < views.size(); ++i) {
         const View& v = views[i];
         const Area seen = common(area, {v.x, v.y, v.x + v.width, v.y + v.height});
@@ -254,10 +308,13 @@ Picture render(const Scene& scene, const RenderOptions& options) {
             };
         const Picture one =
             render_view(scene, v, {seen.x0 - v.x, seen.y0 - v.y, seen.x1 - v.x, seen.y1 - v.y}, how, progress);
-        paste(one.image, seen.x0 - area.x0, seen.y0 - area.y0, all.image);
+        paste(one, seen.x0 - area.x0, seen.y0 - area.y0, all);
         all.tolerance = std::max(all.tolerance, one.tolerance);
         all.certified_error = std::max(all.certified_error, one.certified_error);
         all.triangles += one.triangles;
+        all.leaves += one.leaves;
+        all.rays.rays += one.rays.rays;
+        all.rays.undecided += one.rays.undecided;
         all.seconds_mesh += one.seconds_mesh;
         all.seconds_trace += one.seconds_trace;
     }

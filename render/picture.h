@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include "aov.h"
 #include "image.h"
 #include "scene.h"
 
@@ -12,15 +13,21 @@ struct RenderOptions {
     int width = 0, height = 0, samples = 0;  // 0: as the scene says
     std::optional<Tolerance> tolerance;      // none: as the scene says
     std::optional<std::array<int, 4>> crop;  // x0,y0,x1,y1 in pixels; the picture is then only that part
+    bool exact = false;                      // rays meet the surfaces themselves; the tolerance is for tubes only
+    std::vector<Aov> aovs;                   // what to put in `layers`
     std::vector<Point> also_fit;             // cameras that fit have these in the picture too: other frames of a film
     std::function<void(double)> progress;    // fraction done; called from the calling thread
 };
 
 struct Picture {
     Image image;
+    Layers layers;               // RenderOptions::aovs, as many pixels as the image
     double tolerance = 0;        // absolute, scene units
     double certified_error = 0;  // of the meshes that were traced, float rounding included
     std::size_t triangles = 0;
+    bool exact = false;
+    EmbreeScene::Count rays;     // of an exact picture
+    std::size_t leaves = 0;      // likewise
     double seconds_mesh = 0, seconds_trace = 0;
 };
 

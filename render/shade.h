@@ -11,6 +11,8 @@ namespace isoparm {
 struct Surfel {
     Point origin;  // where its shadow rays begin: clear of the mesh
     Point normal;  // unit, toward the viewer
+    Point position, shading, geometric;  // where it is; normals of surface and mesh, unit, on the viewer's side
+    Vec2 at;                             // parameters, on patches
     Point view;    // unit, toward the viewer
     Color color;   // linear reflectance
     double opacity = 1;

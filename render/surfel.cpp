@@ -52,7 +52,7 @@ void frames_of(const TracedScene& scene, const Hit* hits, int n, Vec2* at, Point
         for (int i = first; i < n; ++i) {
             const Thing& thing = scene.things[hits[i].geometry];
             if (thing.patch != patch) continue;
-            at[i] = parameters(*patch, *thing.part, thing.part->triangles[hits[i].primitive], hits[i]);
+            at[i] = thing.mesh ? parameters(*patch, *thing.part, thing.part->triangles[hits[i].primitive], hits[i]) : Vec2{hits[i].u, hits[i].v};
             u[count] = at[i].x, v[count] = at[i].y;
             which[count++] = i;
             done[i] = true;
@@ -66,6 +66,21 @@ void frames_of(const TracedScene& scene, const Hit* hits, int n, Vec2* at, Point
     }
 }
 
+/// Where the ray met, and the normal that tells front from back.
+struct Met {
+    Point at, outward;
+};
+Met on_triangle(const Thing& thing, const Hit& hit) {
+    const auto& corners = thing.part->triangles[hit.primitive];
+    const auto vertex = [&](int i) -> const Point& { return thing.mesh->positions[thing.part->vertex[corners[i]]]; };
+    const Point e1 = vertex(1) - vertex(0), e2 = vertex(2) - vertex(0);
+    return {vertex(0) + hit.u * e1 + hit.v * e2, normalized(cross(e1, e2))};
+}
+Met on_patch(const Thing& thing, const Ray& ray, const Hit& hit, const Vec2& at, const Point& du, const Point& dv) {
+    const Point n = normal_of(*thing.patch, du, dv, at, -ray.direction);
+    return {ray.origin + hit.distance * ray.direction, thing.flipped ? -n : n};
+}
+
 Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, const Hit& hit, const Vec2& at, const PointFrame& frame) {
     const Thing& thing = scene.things[hit.geometry];
     const double clear = 4e-6 * scene.embree->radius() + thing.error;
@@ -74,23 +89,26 @@ Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, co
     s.opacity = thing.opacity;
     if (!thing.patch) {
         const Point n = normalized(hit.normal);
-        s.normal = facing(dot(n, s.view) < 0 ? -n : n, s.view);
-        s.origin = ray.origin + hit.distance * ray.direction + clear * s.normal;
+        s.shading = s.geometric = dot(n, s.view) < 0 ? -n : n;
+        s.normal = facing(s.shading, s.view);
+        s.position = ray.origin + hit.distance * ray.direction;
+        s.origin = s.position + clear * s.normal;
         s.color = thing.front;
         return s;
     }
-    const auto& corners = thing.part->triangles[hit.primitive];
-    const auto vertex = [&](int i) -> const Point& { return thing.mesh->positions[thing.part->vertex[corners[i]]]; };
-    const Point e1 = vertex(1) - vertex(0), e2 = vertex(2) - vertex(0), on_mesh = vertex(0) + hit.u * e1 + hit.v * e2;
-    const Point outward = normalized(cross(e1, e2));
+    const Point du = coefficient(frame, 1, 0), dv = coefficient(frame, 0, 1);
+    const auto [on_mesh, outward] = thing.mesh ? on_triangle(thing, hit) : on_patch(thing, ray, hit, at, du, dv);
     const bool toward = dot(outward, s.view) >= 0, front = toward != thing.inside_out;
     const Point geometric = toward ? outward : -outward;
 
-    const Point du = coefficient(frame, 1, 0), dv = coefficient(frame, 0, 1);
     Point position = coefficient(frame, 0, 0);
     if (!finite(position)) position = on_mesh;
     const Point n = normal_of(*thing.patch, du, dv, at, geometric);
-    s.normal = facing(dot(n, geometric) < 0 ? -n : n, s.view);
+    s.at = at;
+    s.position = position;
+    s.geometric = geometric;
+    s.shading = dot(n, geometric) < 0 ? -n : n;
+    s.normal = facing(s.shading, s.view);
     // Above both the surface and the mesh: no facet shadows its own surface.
     s.origin = position + (clear + std::max(0.0, dot(on_mesh - position, s.normal))) * s.normal;
     s.color = front ? thing.front : thing.back;

@@ -37,17 +37,19 @@ bool inside_out(const Mesh& mesh) {
     return volume < -1e-3 * std::pow(area, 1.5);
 }
 
+constexpr double kFrontTolerance = 2e-3;  // of meshes that only tell front from back, in sizes of the scene
+
 class Builder {
 public:
-    Builder(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress)
-        : scene_(scene), objects_(objects), tolerance_(tolerance), progress_(progress) {
+    Builder(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress, bool exact)
+        : scene_(scene), objects_(objects), tolerance_(tolerance), progress_(progress), exact_(exact) {
         const Bounds box = bounding_box(scene);
         size_ = box.diagonal() > 0 ? box.diagonal() : 1;
         result_.embree = std::make_unique<EmbreeScene>(0.5 * (box.low + box.high));
         // Room for the rounding to float32, half a unit in the last place of each coordinate about the centre; a
         // tolerance below that cannot be kept, and certified_error will say so.
         const double float_error = 0x1.00001p-24 * 0.5 * size_;
-        mesh_tolerance_ = tolerance > 2 * float_error ? tolerance - float_error : tolerance;
+        mesh_tolerance_ = exact ? kFrontTolerance * size_ : tolerance > 2 * float_error ? tolerance - float_error : tolerance;
     }
 
     TracedScene run() {
@@ -60,7 +62,7 @@ public:
         if (result_.triangles > 0)
             result_.certified_error = rounding::up(result_.certified_error + result_.embree->rounding());
         for (Thing& thing : result_.things)
-            if (thing.patch) thing.error = rounding::up(thing.error + result_.embree->rounding());
+            if (thing.mesh) thing.error = rounding::up(thing.error + result_.embree->rounding());
         return std::move(result_);
     }
 
@@ -95,15 +97,31 @@ private:
         thing.mesh = &mesh;
         thing.inside_out = inside_out(mesh);
         if (o.opacity > 0) {
-            result_.embree->add_mesh(mesh, o.opacity);
+            if (!exact_) result_.embree->add_mesh(mesh, o.opacity);
             for (const MeshPart& part : mesh.parts) {
                 thing.part = &part;
                 thing.patch = &surface.patches[part.member].patch;
                 thing.error = part.certified_error;
                 result_.things.push_back(thing);
+                if (exact_) add_patch(result_.things.back(), surface);
             }
+            ++group_;
         }
         if (o.boundary && !(o.line.width > 0)) add_boundary(o, surface);
+    }
+
+    void add_patch(Thing& thing, const Surface& surface) {
+        const ExactPatch*& known = exact_of_[thing.patch];
+        try {
+            if (!known) known = &result_.patches.emplace_back(*thing.patch, size_);
+        } catch (const Error& e) {
+            throw Error(e.kind(), "surface \"" + surface.name + "\": " + e.what());
+        }
+        result_.embree->add_patch(*known, group_, thing.opacity);
+        thing.flipped = thing.part->flipped;
+        thing.error = 0;
+        thing.mesh = nullptr;
+        thing.part = nullptr;
     }
 
     const Mesh& mesh_of(const Surface& surface, std::size_t objects) {
@@ -119,8 +137,10 @@ private:
                 throw Error(e.kind(), "surface \"" + surface.name + "\": " + e.what());
             }
         }();
-        result_.certified_error = std::max(result_.certified_error, t.certified_error);
-        result_.triangles += t.mesh.triangle_count();
+        if (!exact_) {
+            result_.certified_error = std::max(result_.certified_error, t.certified_error);
+            result_.triangles += t.mesh.triangle_count();
+        }
         return *(known = &result_.meshes.emplace_back(std::move(t.mesh)));
     }
 
@@ -190,17 +210,21 @@ private:
     double tolerance_, mesh_tolerance_ = 0, size_ = 1;
     const std::function<void(double)>& progress_;
     TracedScene result_;
+    bool exact_;
+    std::uint32_t group_ = 0;
     std::map<const Surface*, const Mesh*> mesh_of_;
+    std::map<const Patch*, const ExactPatch*> exact_of_;
     std::size_t done_ = 0, surfaces_ = 0;
 };
 
 }  // namespace
 
-TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress) {
-    return build_traced_scene(scene, drawn_objects(scene), tolerance, progress);
+TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress, bool exact) {
+    return build_traced_scene(scene, drawn_objects(scene), tolerance, progress, exact);
 }
-TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress) {
-    return Builder(scene, objects, tolerance, progress).run();
+TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress,
+                               bool exact) {
+    return Builder(scene, objects, tolerance, progress, exact).run();
 }
 
 }  // namespace isoparm

@@ -10,12 +10,14 @@
 
 namespace isoparm {
 
-/// One geometry of the EmbreeScene. Surfaces have a patch, and a mesh that lies within `error` of it.
+/// One geometry of the EmbreeScene. Surfaces have a patch, and either a mesh that lies within `error` of it or, where rays meet the patch
+/// itself, none.
 struct Thing {
     Color front, back;  // colours of the two sides, linear
     double opacity = 1;
     double error = 0;         // scene units
     bool inside_out = false;  // triangles wind about the back
+    bool flipped = false;     // without a mesh: its triangles would wind against S_u x S_v
     Isolines isolines;
     const Patch* patch = nullptr;
     const Mesh* mesh = nullptr;
@@ -24,6 +26,7 @@ struct Thing {
 
 struct TracedScene {
     std::deque<Mesh> meshes;
+    std::deque<ExactPatch> patches;
     std::vector<Thing> things;  // by the number of the geometry
     std::unique_ptr<EmbreeScene> embree;
     std::size_t triangles = 0;
@@ -31,9 +34,11 @@ struct TracedScene {
 };
 
 /// Tessellates every surface that is drawn, once each, within `tolerance` (scene units). Refers to patches of `scene`,
-/// which must live as long. Throws what tessellate() throws, with the surface's name.
-TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress);
+/// which must live as long. Throws what tessellate() throws, with the surface's name. `exact`: rays meet the patches themselves, and the
+/// meshes, coarse ones, only tell which side is the front.
+TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress, bool exact = false);
 /// Only some objects of the scene.
-TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress);
+TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress,
+                               bool exact = false);
 
 }  // namespace isoparm

@@ -39,7 +39,6 @@ TEST(Commands, UsageErrorsSuggest) {
     expect("tessellate " + scene("coons") + " -o x.ply --tolerance 0", 64, "expected a positive number");
     expect("tessellate " + scene("coons") + " -o x.ply --tolerance 1px", 64, "needs a picture");
     expect("tessellate " + scene("coons") + " -o x.ply --measure angular", 64, "expected one of: geometric, parametric");
-    expect("render " + scene("coons") + " -o x.png --exact", 64, "not built yet");
     expect("render " + scene("coons") + " -o x.png --size 10", 64, "expected WIDTHxHEIGHT");
     expect("figures nothing -o /tmp", 64, "expected one of: cone");
 }

@@ -21,13 +21,16 @@ surfaces. The same scene gives the same bytes, for every number of threads and a
 --samples N       samples a pixel; otherwise the scene's
 --tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal, 0.25px of the picture; otherwise the scene's
 --crop x0,y0,x1,y1  only these pixels, x0 <= x < x1, y0 <= y < y1, y down
+--aov LIST        further channels in the same .exr, of the ray through the middle of each pixel: all, or some of
+                  N,Ng,P,uv,albedo,Z,patch,triangle,curvature,error,variance (docs/rendering.md)
+--exact           rays meet the surfaces themselves, not meshes: hits are proved (docs/exact.md); slower. Curves and points are
+                  as they were, and --tolerance is for them only
 --reproducible    no dates or host names in the file, which is the case anyway
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
 --frames N        N pictures, 2 to 10000; IMAGE then holds %d or %04d, which is replaced by 0, 1, ... N-1
 --animate p=A:B   the parameter p goes from A in the first frame to B in the last, evenly; --animate p goes from its min
                   to its max. May be repeated. Cameras that fit have all frames in the picture
 --quiet           no messages; --threads N  at most N threads
-Not built yet: --exact, --aov.
 )";
 
 void render_one(const Scene& scene, const std::string& output, RenderOptions how, bool quiet) {
@@ -37,16 +40,18 @@ void render_one(const Scene& scene, const std::string& output, RenderOptions how
         how.progress = std::ref(bar);
         return render(scene, how);
     }();
-    write_image(output, picture.image, metadata_of(scene, picture));
+    write_image(output, picture.image, picture.layers, metadata_of(scene, picture));
     if (!quiet) std::fprintf(stderr, "%s: %s\n", output.c_str(), summary_of(picture).c_str());
 }
 
 int run(const std::vector<std::string>& arguments) {
     const Options options("render", arguments,
                           {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}, {"--crop", true}, {"--set", true}, {"--reproducible", false}, {"--frames", true}, {"--animate", true},
-                           {"--exact", false, "rays are traced against certified meshes"}, {"--aov", true, "only the picture itself is written"}});
+                           {"--exact", false}, {"--aov", true}});
     const std::string output = options.required("-o", "the image file to write");
     RenderOptions how = read_render_options(options);
+    how.aovs = read_aovs(options, output);
+    how.exact = options.has("--exact");
     if (options.has("--frames") || options.has("--animate")) {
         const auto frames = frames_of(options, output);
         how.also_fit = points_of(frames, options);

@@ -1,5 +1,6 @@
 #include "commands/render_options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
@@ -46,17 +47,51 @@ RenderOptions read_render_options(const Options& options) {
     return how;
 }
 
+std::vector<Aov> read_aovs(const Options& options, const std::string& output) {
+    const auto list = options.value("--aov");
+    if (!list) return {};
+    std::vector<std::string> names;
+    for (const AovKind& k : all_aovs()) names.push_back(k.name);
+    std::vector<bool> wanted(names.size(), false);
+    for (std::size_t from = 0; from <= list->size();) {
+        const std::size_t comma = std::min(list->find(',', from), list->size());
+        const std::string name = list->substr(from, comma - from);
+        from = comma + 1;
+        const auto known = std::find(names.begin(), names.end(), name);
+        if (name == "all") wanted.assign(names.size(), true);
+        else if (known != names.end()) wanted[static_cast<std::size_t>(known - names.begin())] = true;
+        else options.fail("--aov: found " + quoted(name) + ", expected all, or some of " + listed(names) + " with commas between" + did_you_mean(name, names));
+    }
+    if (!holds_layers(output)) options.fail("--aov: found " + quoted(output) + ", expected a file with the extension .exr, which alone holds further channels");
+    std::vector<Aov> aovs;
+    for (const AovKind& k : all_aovs())
+        if (wanted[static_cast<std::size_t>(k.aov)]) aovs.push_back(k.aov);
+    return aovs;
+}
+
 Metadata metadata_of(const Scene& scene, const Picture& picture) {
-    return {{"Software", "isoparm " ISOPARM_VERSION},
+    Metadata data{{"Software", "isoparm " ISOPARM_VERSION},
             {"isoparm:scene", std::filesystem::path(scene.path).filename().string()},
             {"isoparm:title", scene.title},
-            {"isoparm:tolerance", to_text(picture.tolerance)},
-            {"isoparm:certified_error", to_text(picture.certified_error)},
-            {"isoparm:triangles", std::to_string(picture.triangles)}};
+            {"isoparm:tolerance", to_text(picture.tolerance)}};
+    if (picture.exact) {
+        data.push_back({"isoparm:exact_rays", std::to_string(picture.rays.rays)});
+        data.push_back({"isoparm:undecided_rays", std::to_string(picture.rays.undecided)});
+    } else {
+        data.push_back({"isoparm:certified_error", to_text(picture.certified_error)});
+        data.push_back({"isoparm:triangles", std::to_string(picture.triangles)});
+    }
+    if (!picture.layers.channels.empty()) data.push_back({"isoparm:patches", patch_numbers(scene)});
+    return data;
 }
 
 std::string summary_of(const Picture& p) {
-    char text[160];
+    char text[200];
+    if (p.exact) {
+        std::snprintf(text, sizeof text, "%dx%d, exact, %zu leaves, %.2f s; of %llu rays %llu ended undecided (tangent, or at a singular point)", p.image.width, p.image.height,
+                      p.leaves, p.seconds_mesh + p.seconds_trace, static_cast<unsigned long long>(p.rays.rays), static_cast<unsigned long long>(p.rays.undecided));
+        return text;
+    }
     std::snprintf(text, sizeof text, "%dx%d, %zu triangles, certified error %.3g (tolerance %.3g), %.2f s", p.image.width, p.image.height, p.triangles, p.certified_error,
                   p.tolerance, p.seconds_mesh + p.seconds_trace);
     return text;
