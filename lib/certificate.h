@@ -1,0 +1,65 @@
+// certificate.h -- a mesh with all that is needed to prove again, by little code, how far it is from its surface.
+//
+// docs/certificates.md, "Certificate files", has the theorem. Made by certificate.cpp from what tessellate() has proved; checked by
+// certificate_check.cpp, which shares no code with the bounds that tessellate() is made by, only the enclosures of the surface.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "composite.h"
+#include "scalar/vec.h"
+
+namespace isoparm {
+
+struct CertifiedTriangle {
+    std::array<std::uint32_t, 3> corner{};  // of the patch, counter-clockwise in the domain
+    /// Of edge k from corner a = k to b = k + 1: the surface's points for it are at the parameters of the cubic Bezier curve a, (2a + b) / 3 + slide[k][0],
+    /// (a + 2b) / 3 + slide[k][1], b.
+    std::array<std::array<Vec2, 2>, 3> slide{};
+    double bound = 0;                       // claimed: no point is farther than that from the surface's point for it
+};
+
+struct CertifiedPatch {
+    std::string name;
+    std::vector<Vec2> uv;               // parameters of each corner
+    std::vector<std::uint32_t> vertex;  // and the vertex that it is
+    std::vector<CertifiedTriangle> triangles;
+};
+
+struct Certificate {
+    double tolerance = 0, certified_error = 0;
+    std::vector<Point> points;  // vertices, as in the mesh file
+    std::vector<CertifiedPatch> patches;
+
+    std::size_t triangle_count() const;
+};
+
+struct Tessellation;
+/// Of a mesh that was made with options.bounds; its positions as they will be written. `slide`: surface points may move along the surface
+/// (geometric measure). Result does not depend on the number of threads.
+Certificate make_certificate(const Composite& surface, const Tessellation& tessellation, bool slide);
+
+struct CertificateCheck {
+    struct Failure {
+        std::size_t patch = 0, triangle = 0;  // from 0, in the order of the certificate
+        bool exceeded = false;                // a point that is farther was found; else the bound could not be proved within the budget
+        Vec2 uv;                              // a parameter of that point, or of the place where the proof got stuck
+        double distance = 0;                  // at least, or at most, how far it is
+    };
+    std::vector<std::string> faults;  // why this is no certificate of a mesh of the surface, whatever the bounds are; then no bound is looked at
+    std::vector<Failure> failures;    // triangles whose bound is not proved
+    std::size_t checked = 0;          // triangles; not all once there are most_failures
+    std::size_t pieces = 0;           // that they were cut into
+
+    static constexpr std::size_t most_failures = 100;
+    bool proved() const { return faults.empty() && failures.empty(); }
+};
+
+/// Proves that the mesh is within certified_error of the surface, both ways. `pieces`: the budget for a triangle. The result does not
+/// depend on the number of threads.
+CertificateCheck check_certificate(const Composite& surface, const Certificate& certificate, std::size_t pieces = 20000, const std::function<void(double)>& progress = {});
+
+}  // namespace isoparm
