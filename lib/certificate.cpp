@@ -223,19 +223,6 @@ Certificate make_certificate(const Composite& surface, const Tessellation& t, bo
             slides.find();
             slides.settle(all.certified_error);
         }
-        if (getenv("CERT_DEBUG")) {
-            std::vector<double> ratio;
-            int over = 0, overall = 0;
-            double worst = 0, worst_all = 0;
-            for (auto& c : p.triangles) {
-                const double s = sampled_distance(surface[m].patch, all.points, p, c);
-                over += s > c.bound, overall += s > all.certified_error;
-                worst = std::max(worst, s / c.bound), worst_all = std::max(worst_all, s / all.certified_error);
-                ratio.push_back(c.bound / s);
-            }
-            std::sort(ratio.begin(), ratio.end());
-            fprintf(stderr, "%s: %zu triangles, over bound %d (worst %g), over all %d (worst %g), bound/sampled 1%% %g 10%% %g median %g\n", p.name.c_str(), p.triangles.size(), over, worst, overall, worst_all, ratio[ratio.size() / 100], ratio[ratio.size() / 10], ratio[ratio.size() / 2]);
-        }
         all.patches.push_back(std::move(p));
     }
     return all;

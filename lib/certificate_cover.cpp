@@ -9,7 +9,10 @@
 namespace isoparm {
 namespace {
 
-std::string text_of(const Vec2& p) { return "(" + to_text(p.x) + ", " + to_text(p.y) + ")"; }
+std::string text_of(const Vec2& p) {
+    std::string text = "(";
+    return text += to_text(p.x) + ", " + to_text(p.y) + ")";
+}
 
 /// The sign of u + v - 1, without rounding.
 int beyond_third(const Vec2& p) {
