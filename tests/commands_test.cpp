@@ -37,7 +37,6 @@ TEST(Commands, UsageErrorsSuggest) {
     expect("tessellate " + scene("coons") + " -o x.glb", 64, "not built yet");
     expect("tessellate " + scene("coons") + " -o x.ply --quality best", 64, "expected one of: fast, optimal");
     expect("tessellate " + scene("coons") + " -o x.ply --vertices free", 64, "not built yet");
-    expect("tessellate " + scene("coons") + " -o x.ply --certificate c.json", 64, "not built yet");
     expect("tessellate " + scene("coons") + " -o x.ply --tolerance 0", 64, "expected a positive number");
     expect("tessellate " + scene("coons") + " -o x.ply --tolerance 1px", 64, "needs a picture");
     expect("tessellate " + scene("coons") + " -o x.ply --measure angular", 64, "expected one of: geometric, parametric");
