@@ -13,10 +13,12 @@
 #include "error.h"
 #include "io/atomic_file.h"
 #include "io/extension.h"
+#include "io/glb.h"
 #include "io/mesh_files.h"
 #include "isoparm_version.h"
 #include "json.h"
 #include "json_text.h"
+#include "palette.h"
 #include "progress.h"
 #include "scalar/interval.h"
 #include "sha256.h"
@@ -32,14 +34,15 @@ Triangulates surfaces so that no point of the mesh is farther than the tolerance
 surface farther than that from the mesh. This is proved, with every rounding error counted, for every triangle; edges
 that patches share are found and share their vertices.
 
--o MESH           .ply (binary, every double exact), .obj (exact decimals) or .stl (binary, float32: what its rounding moves
-                  points by is counted; a tolerance below that ends with exit code 2)
+-o MESH           .ply (binary, every double exact), .obj (exact decimals), .stl or .glb (binary, float32: what its rounding moves
+                  points by is counted; a tolerance below that ends with exit code 2). .glb is glTF 2.0, with the
+                  surfaces' names, colours and exact normals
 --surface S       one surface, or one patch of it, as in teapot/teapot#7; otherwise all surfaces that the scene draws
 --tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal; otherwise the scene's
 --measure M       geometric (default): the distance of the two sets, both ways; parametric: of points at equal parameters,
                   |S(u,v)-L(u,v)|, which is never less
 --normals DEGREES the largest angle between a triangle and the surface's normals over it, below 90, proved as well; triangles smaller
-                  than the tolerance at poles and apexes are left out and counted (exit code 1). Not with parametric, optimal or .stl
+                  than the tolerance at poles and apexes are left out and counted (exit code 1). Not with parametric, optimal, .stl or .glb
 --quality Q       fast (default): bisection only; optimal: then vertices move, edges flip and vertices go, under the same proof, until
                   little is gained: a half to two thirds of the triangles, about a hundred times the time
 --vertices V      surface: vertices lie on the surface; free is not built yet
@@ -47,7 +50,7 @@ that patches share are found and share their vertices.
 --report FILE     JSON: triangles, vertices, tolerance, measure, quality, certified_error, sampled_error, boundary_loops,
                   t_junctions, non_manifold_edges, normal_deviation (degrees; of all triangles but normals_unproved), seconds,
                   surfaces (with the asymptotic optimum of triangles),
-                  format_rounding (how far float32 moves points in .stl; part of certified_error); - is standard output
+                  format_rounding (how far float32 moves points in .stl and .glb; part of certified_error); - is standard output
 --certificate F   a JSON file that lets isoparm verify --certificate prove the error again: parameters, bound and method of every triangle;
                   it is checked before it is written. Some seconds for 100000 triangles, and 250 bytes for each
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
@@ -57,8 +60,8 @@ that patches share are found and share their vertices.
 /// Fails now rather than after the work.
 void check_output(const std::string& path, const Options& options) {
     const std::string extension = extension_of(path);
-    if (extension == ".glb") options.fail("-o: .glb is not built yet; expected .ply, .obj or .stl");
-    if (extension != ".ply" && extension != ".obj" && extension != ".stl") options.fail("-o: found " + quoted(path) + ", expected a name that ends in .ply, .obj or .stl");
+    if (extension != ".ply" && extension != ".obj" && extension != ".stl" && extension != ".glb")
+        options.fail("-o: found " + quoted(path) + ", expected a name that ends in .ply, .obj, .stl or .glb");
     std::vector<NamedFile> outputs{{"-o", path}};
     if (const auto report = options.value("--report")) outputs.push_back({"--report", *report});
     if (const auto certificate = options.value("--certificate")) outputs.push_back({"--certificate", *certificate});
@@ -114,6 +117,28 @@ CertificateFile certificate_of(const Scene& scene, const Selection& selection, c
                                            ")), so nothing was written; ask for a smaller tolerance or --measure parametric, or leave out --certificate");
     }
     return file;
+}
+
+/// Names and colours as in a picture; patches that do not come one after the other are several surfaces.
+std::vector<GlbSurface> glb_surfaces(const Scene& scene, const Selection& selection) {
+    std::vector<GlbSurface> all;
+    for (std::size_t m = 0; m < selection.patches.size(); ++m) {
+        if (all.empty() || all.back().name != selection.surface[m]) {
+            GlbSurface s{selection.surface[m], surface_color(all.size()), 1, {}};
+            std::size_t drawn = 0;
+            for (const SceneObject& o : scene.objects) {
+                if (o.kind != SceneObject::Kind::surface) continue;
+                if (o.name == s.name.substr(0, s.name.find('/'))) {
+                    s.color = o.color.value_or(surface_color(drawn)), s.opacity = o.opacity;
+                    break;
+                }
+                ++drawn;
+            }
+            all.push_back(s);
+        }
+        all.back().parts.push_back(m);
+    }
+    return all;
 }
 
 struct SurfaceSum {
@@ -182,10 +207,10 @@ int run(const std::vector<std::string>& arguments) {
     const Bounds box = bounding_box(selection.patches);
     const double tolerance = absolute_tolerance(given ? *given : scene.tolerance, finite_diagonal(scene, box), options);
     if (!(tolerance > 0)) throw_input(scene.place + ": found surfaces of size 0, expected some that a relative tolerance can be taken of");
-    const bool stl = extension_of(output) == ".stl";
-    const double reserved = stl ? float_rounding_bound(box) : 0;
+    const bool glb = extension_of(output) == ".glb", float32 = glb || extension_of(output) == ".stl";
+    const double reserved = float32 ? float_rounding_bound(box) : 0;
     if (!(reserved < tolerance)) {
-        throw Error(ErrorKind::budget, scene.path + ": the tolerance " + to_text(tolerance) + " cannot be kept in .stl, whose float32 coordinates move points by up to " +
+        throw Error(ErrorKind::budget, scene.path + ": the tolerance " + to_text(tolerance) + " cannot be kept in " + extension_of(output) + ", whose float32 coordinates move points by up to " +
                                            to_text(reserved) + "; write .ply or .obj");
     }
     TessellationOptions how;
@@ -195,7 +220,7 @@ int run(const std::vector<std::string>& arguments) {
     how.quality = quality == "optimal" ? Quality::optimal : Quality::fast;
     if (const auto degrees = options.number("--normals")) {
         if (!(*degrees > 0 && *degrees < 90)) options.fail("--normals: found " + to_text(*degrees) + ", expected degrees above 0 and below 90");
-        if (measure == "parametric" || stl) options.fail("--normals: proved with --measure geometric, of a mesh in .ply or .obj");
+        if (measure == "parametric" || float32) options.fail("--normals: proved with --measure geometric, of a mesh in .ply or .obj");
         if (how.quality != Quality::fast) options.fail("--normals: proved with --quality fast");
         how.normal_deviation = *degrees;
     }
@@ -205,12 +230,12 @@ int run(const std::vector<std::string>& arguments) {
         how.progress = std::ref(bar);
         return tessellate(selection.patches, how);
     }();
-    const double moved = stl ? float_rounding(result.mesh) : 0;
-    if (stl) add_rounding(result, moved);
+    const double moved = float32 ? float_rounding(result.mesh) : 0;
+    if (float32) add_rounding(result, moved);
     result.tolerance = tolerance;
     std::optional<CertificateFile> certificate;
     if (options.has("--certificate")) {
-        if (!stl) certificate = certificate_of(scene, selection, options, result, measure);
+        if (!float32) certificate = certificate_of(scene, selection, options, result, measure);
         else {
             Tessellation rounded = result;
             round_positions(rounded, moved);
@@ -223,7 +248,8 @@ int run(const std::vector<std::string>& arguments) {
                                            std::to_string(result.topology.non_manifold_edges) + " non-manifold edges; nothing was written");
     }
     const auto start = std::chrono::steady_clock::now();
-    write_mesh(output, result.mesh, mesh_comment(scene, result));
+    if (glb) write_atomically(output, [&](std::ostream& out) { write_glb(out, result.mesh, selection.patches, glb_surfaces(scene, selection)); });
+    else write_mesh(output, result.mesh, mesh_comment(scene, result));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (certificate) write_atomically(*options.value("--certificate"), [&](std::ostream& out) { write_certificate(out, *certificate); });
     if (const auto report = options.value("--report")) {
@@ -244,6 +270,6 @@ int run(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-const Command tessellate_command = {"tessellate", "a mesh whose error is proved, as PLY, OBJ or STL", kHelp, run};
+const Command tessellate_command = {"tessellate", "a mesh whose error is proved, as PLY, OBJ, STL or glTF", kHelp, run};
 
 }  // namespace isoparm
