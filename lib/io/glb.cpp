@@ -84,7 +84,8 @@ public:
     void add(const GlbSurface& s, const Primitive& p) {
         const std::string comma = count_ ? ",\n" : "\n", n = std::to_string(count_), a = std::to_string(3 * count_), b = std::to_string(3 * count_ + 1), c = std::to_string(3 * count_ + 2);
         nodes_ += comma + "{\"name\": " + json_text(s.name) + ", \"mesh\": " + n + "}";
-        roots_ += (count_ ? ", " : "") + n;
+        roots_ += count_ ? ", " : "";
+        roots_ += n;
         meshes_ += comma + "{\"name\": " + json_text(s.name) + ", \"primitives\": [{\"attributes\": {\"POSITION\": " + a + ", \"NORMAL\": " + b + "}, \"indices\": " + c + ", \"material\": " + n + ", \"mode\": 4}]}";
         const auto channel = [](double x) { return to_text(std::clamp(x, 0.0, 1.0)); };
         materials_ += comma + "{\"name\": " + json_text(s.name) + ", \"pbrMetallicRoughness\": {\"baseColorFactor\": [" + channel(s.color.x) + ", " + channel(s.color.y) + ", " + channel(s.color.z) + ", " +
