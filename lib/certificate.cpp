@@ -82,21 +82,12 @@ Interval cell_between(const std::vector<double>& lines, double low) {
 
 /// The largest distance of the surface's points from the triangle's, as sampled.
 double sampled_distance(const Patch& patch, const std::vector<Point>& points, const CertifiedPatch& p, const CertifiedTriangle& t) {
-    constexpr int n = 8;
     double most = 0;
-    for (int i = 0; i <= n; ++i)
-        for (int j = 0; i + j <= n; ++j) {
-            const double l[3] = {double(n - i - j) / n, double(i) / n, double(j) / n};
-            Vec2 q;
-            Point x;
-            for (int k = 0; k < 3; ++k) {
-                const double a = l[k], b = l[(k + 1) % 3], c = l[(k + 2) % 3];  // the control point inside moves by a quarter of the six slides
-                q = plus(q, p.uv[t.corner[k]], a);
-                q = plus(plus(q, t.slide[k][0], 3 * a * b * (a + 0.5 * c)), t.slide[k][1], 3 * a * b * (b + 0.5 * c));
-                x += l[k] * points[p.vertex[t.corner[k]]];
-            }
-            most = std::max(most, distance(patch.point(q.x, q.y), x));
-        }
+    each_sample(p, t, [&](const Vec2& q, const std::array<double, 3>& l) {
+        Point x;
+        for (int k = 0; k < 3; ++k) x += l[k] * points[p.vertex[t.corner[k]]];
+        most = std::max(most, distance(patch.point(q.x, q.y), x));
+    });
     return most;
 }
 

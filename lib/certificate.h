@@ -29,6 +29,22 @@ struct CertifiedPatch {
     std::vector<CertifiedTriangle> triangles;
 };
 
+/// Calls use(parameters of the surface's point, barycentric coordinates) at points of a triangle, its corners among them.
+template <class Use> void each_sample(const CertifiedPatch& p, const CertifiedTriangle& t, Use use) {
+    constexpr int n = 8;
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; i + j <= n; ++j) {
+            const std::array<double, 3> l{double(n - i - j) / n, double(i) / n, double(j) / n};
+            Vec2 q;
+            const auto add = [&q](const Vec2& w, double s) { q = {q.x + s * w.x, q.y + s * w.y}; };
+            for (int k = 0; k < 3; ++k) {
+                const double a = l[k], b = l[(k + 1) % 3], c = l[(k + 2) % 3];  // the control point inside moves by a quarter of the six slides
+                add(p.uv[t.corner[k]], a), add(t.slide[k][0], 3 * a * b * (a + 0.5 * c)), add(t.slide[k][1], 3 * a * b * (b + 0.5 * c));
+            }
+            use(q, l);
+        }
+}
+
 struct Certificate {
     double tolerance = 0, certified_error = 0;
     std::vector<Point> points;  // vertices, as in the mesh file
