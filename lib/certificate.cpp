@@ -194,6 +194,13 @@ double room_of(const std::vector<Point>& points) {
 
 }  // namespace
 
+double sampled_distance(const Composite& surface, const Certificate& c) {
+    double most = 0;
+    for (std::size_t m = 0; m < c.patches.size(); ++m)
+        for (const CertifiedTriangle& t : c.patches[m].triangles) most = std::max(most, sampled_distance(surface[m].patch, c.points, c.patches[m], t));
+    return most;
+}
+
 Certificate make_certificate(const Composite& surface, const Tessellation& t, bool slide) {
     Certificate all;
     const double room = room_of(t.mesh.positions);

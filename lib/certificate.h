@@ -58,6 +58,9 @@ struct Tessellation;
 /// (geometric measure). Result does not depend on the number of threads.
 Certificate make_certificate(const Composite& surface, const Tessellation& tessellation, bool slide);
 
+/// The largest distance of a point of the mesh from the surface's point for it, at samples.
+double sampled_distance(const Composite& surface, const Certificate& certificate);
+
 struct CertificateCheck {
     struct Failure {
         std::size_t patch = 0, triangle = 0;  // from 0, in the order of the certificate

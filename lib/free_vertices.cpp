@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <optional>
 
 #include "certificate.h"
 #include "error.h"
@@ -95,7 +94,7 @@ bool centre(const Composite& surface, double tolerance, bool slide, Tessellation
     Centring(surface, on_surface, t.mesh).balance(12);
     const Certificate c = make_certificate(surface, t, slide);
     if (!check_certificate(surface, c).proved()) return false;
-    t.certified_error = 0;
+    t.certified_error = 0, t.sampled_error = sampled_distance(surface, c);
     for (std::size_t m = 0; m < c.patches.size(); ++m) {
         MeshPart& part = t.mesh.parts[m];
         part.certified_error = 0;
@@ -112,32 +111,27 @@ Tessellation tessellate_free(const Composite& surface, const TessellationOptions
     if (options.normal_deviation > 0) throw_input("a limit of the normal deviation needs vertices on the surface");
     const auto start = std::chrono::steady_clock::now();
     const bool slide = options.measure == Measure::geometric;
+    Tessellation result = tessellate(surface, options);  // what it needs, or cannot, is found first
     TessellationOptions how = options;
-    how.study = false, how.bounds = true;
-    const auto attempt = [&](double coarser, Quality quality) -> std::optional<Tessellation> {
+    how.study = false, how.progress = {};
+    const auto attempt = [&](double coarser, Quality quality) {
         how.tolerance = coarser * options.tolerance, how.quality = quality;
         Tessellation t = tessellate(surface, how);
-        if (!centre(surface, options.tolerance, slide, t)) return {};
-        return t;
+        if (!centre(surface, options.tolerance, slide, t)) return false;
+        if (t.mesh.triangle_count() < result.mesh.triangle_count()) result = std::move(t);
+        return true;
     };
-    // The largest factor that will do, about; more vertices do not always help, so the best mesh counts.
-    std::optional<Tessellation> best;
-    double low = 1, high = 4;
-    for (int i = 0; i < 6; ++i) {
+    constexpr int steps = 6;
+    double low = 1, high = 4;  // the largest factor that will do lies between them, about
+    for (int i = 0; i < steps; ++i) {
+        if (options.progress) options.progress(double(i) / (steps + 1));
         const double factor = std::sqrt(low * high);
-        std::optional<Tessellation> t = attempt(factor, Quality::fast);
-        (t ? low : high) = factor;
-        if (t && (!best || t->mesh.triangle_count() < best->mesh.triangle_count())) best = std::move(t);
+        (attempt(factor, Quality::fast) ? low : high) = factor;
     }
     if (options.quality == Quality::optimal)
         for (const double factor : {1.15 * low, low, 0.87 * low})
-            if (auto t = attempt(factor, Quality::optimal)) {
-                if (!best || t->mesh.triangle_count() < best->mesh.triangle_count()) best = std::move(t);
-                break;
-            }
-    how.tolerance = options.tolerance, how.quality = options.quality;
-    Tessellation plain = tessellate(surface, how);
-    Tessellation result = best && best->mesh.triangle_count() <= plain.mesh.triangle_count() ? std::move(*best) : std::move(plain);
+            if (attempt(factor, Quality::optimal)) break;
+    result.normal_deviation = 0, result.normals_unproved = 0;
     result.seconds_tessellate = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (std::size_t m = 0; options.study && m < surface.size(); ++m) result.surfaces[m].optimal_triangles = optimal_triangles(surface[m].patch, options.tolerance);
     return result;

@@ -11,6 +11,7 @@
 #include "commands/output.h"
 #include "commands/selection.h"
 #include "error.h"
+#include "free_vertices.h"
 #include "io/atomic_file.h"
 #include "io/extension.h"
 #include "io/glb.h"
@@ -45,10 +46,11 @@ that patches share are found and share their vertices.
                   than the tolerance at poles and apexes are left out and counted (exit code 1). Not with parametric, optimal, .stl or .glb
 --quality Q       fast (default): bisection only; optimal: then vertices move, edges flip and vertices go, under the same proof, until
                   little is gained: a half to two thirds of the triangles, about a hundred times the time
---vertices V      surface: vertices lie on the surface; free is not built yet
+--vertices V      surface (default): vertices lie on the surface; free: they leave it by up to the tolerance where that saves triangles, about
+                  half of them on convex surfaces, for some ten times the time; proved as certificates are
 --max-triangles N the budget, 20000000; beyond it the command ends with exit code 2 and says what was reached
---report FILE     JSON: triangles, vertices, tolerance, measure, quality, certified_error, sampled_error, boundary_loops,
-                  t_junctions, non_manifold_edges, normal_deviation (degrees; of all triangles but normals_unproved), seconds,
+--report FILE     JSON: triangles, vertices, tolerance, measure, quality, vertices_on, certified_error, sampled_error, boundary_loops,
+                  t_junctions, non_manifold_edges, normal_deviation (degrees; of all triangles but normals_unproved; null with free), seconds,
                   surfaces (with the asymptotic optimum of triangles),
                   format_rounding (how far float32 moves points in .stl and .glb; part of certified_error); - is standard output
 --certificate F   a JSON file that lets isoparm verify --certificate prove the error again: parameters, bound and method of every triangle;
@@ -168,11 +170,11 @@ std::vector<SurfaceSum> sums(const Tessellation& t, const Selection& selection) 
     return all;
 }
 
-void write_report(std::ostream& out, const Tessellation& t, const Selection& selection, const std::string& measure, const std::string& quality, double format_rounding, double seconds_write) {
+void write_report(std::ostream& out, const Tessellation& t, const Selection& selection, const std::string& measure, const std::string& quality, bool free, double format_rounding, double seconds_write) {
     out << "{\"triangles\": " << t.mesh.triangle_count() << ", \"vertices\": " << t.mesh.positions.size() << ",\n \"tolerance\": " << json_text(t.tolerance)
-        << ", \"measure\": " << json_text(measure) << ", \"quality\": " << json_text(quality) << ", \"certified_error\": " << json_text(t.certified_error) << ", \"sampled_error\": " << json_text(t.sampled_error)
+        << ", \"measure\": " << json_text(measure) << ", \"quality\": " << json_text(quality) << ", \"vertices_on\": " << (free ? "\"free\"" : "\"surface\"") << ", \"certified_error\": " << json_text(t.certified_error) << ", \"sampled_error\": " << json_text(t.sampled_error)
         << ", \"format_rounding\": " << json_text(format_rounding)
-        << ",\n \"normal_deviation\": " << (measure == "geometric" ? json_text(t.normal_deviation) : "null") << ", \"normals_unproved\": " << t.normals_unproved
+        << ",\n \"normal_deviation\": " << (measure == "geometric" && !free ? json_text(t.normal_deviation) : "null") << ", \"normals_unproved\": " << t.normals_unproved
         << ",\n \"boundary_loops\": " << t.topology.boundary_loops << ", \"boundary_edges\": " << t.topology.boundary_edges << ", \"t_junctions\": " << t.topology.t_junctions
         << ", \"non_manifold_edges\": " << t.topology.non_manifold_edges << ", \"degenerate_triangles\": " << t.topology.degenerate_triangles
         << ",\n \"seconds\": {\"tessellate\": " << json_text(t.seconds_tessellate) << ", \"sample\": " << json_text(t.seconds_sample) << ", \"write\": " << json_text(seconds_write)
@@ -199,7 +201,7 @@ int run(const std::vector<std::string>& arguments) {
     check_output(output, options);
     const std::string measure = options.word("--measure", {"geometric", "parametric"});
     const std::string quality = options.word("--quality", {"fast", "optimal"});
-    if (options.word("--vertices", {"surface", "free"}) != "surface") options.fail("--vertices free is not built yet");
+    const bool free = options.word("--vertices", {"surface", "free"}) == "free";
     const auto given = options.tolerance();
 
     const Scene scene = options.scene();
@@ -221,6 +223,7 @@ int run(const std::vector<std::string>& arguments) {
     if (const auto degrees = options.number("--normals")) {
         if (!(*degrees > 0 && *degrees < 90)) options.fail("--normals: found " + to_text(*degrees) + ", expected degrees above 0 and below 90");
         if (measure == "parametric" || float32) options.fail("--normals: proved with --measure geometric, of a mesh in .ply or .obj");
+        if (free) options.fail("--normals: proved with --vertices surface");
         if (how.quality != Quality::fast) options.fail("--normals: proved with --quality fast");
         how.normal_deviation = *degrees;
     }
@@ -228,7 +231,7 @@ int run(const std::vector<std::string>& arguments) {
     Tessellation result = [&] {
         ProgressBar bar("tessellating", options.quiet());
         how.progress = std::ref(bar);
-        return tessellate(selection.patches, how);
+        return free ? tessellate_free(selection.patches, how) : tessellate(selection.patches, how);
     }();
     const double moved = float32 ? float_rounding(result.mesh) : 0;
     if (float32) add_rounding(result, moved);
@@ -253,7 +256,7 @@ int run(const std::vector<std::string>& arguments) {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (certificate) write_atomically(*options.value("--certificate"), [&](std::ostream& out) { write_certificate(out, *certificate); });
     if (const auto report = options.value("--report")) {
-        const auto write = [&](std::ostream& out) { write_report(out, result, selection, measure, quality, moved, seconds); };
+        const auto write = [&](std::ostream& out) { write_report(out, result, selection, measure, quality, free, moved, seconds); };
         if (*report == "-") write(std::cout);
         else write_atomically(*report, write);
     }
