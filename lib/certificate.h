@@ -79,6 +79,6 @@ struct CertificateCheck {
 
 /// Proves that the mesh is within certified_error of the surface, both ways. `pieces`: the budget for a triangle. The result does not
 /// depend on the number of threads.
-CertificateCheck check_certificate(const Composite& surface, const Certificate& certificate, std::size_t pieces = 20000, const std::function<void(double)>& progress = {});
+CertificateCheck check_certificate(const Composite& surface, const Certificate& certificate, std::size_t pieces = 5000, const std::function<void(double)>& progress = {});
 
 }  // namespace isoparm

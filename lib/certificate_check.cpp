@@ -216,7 +216,7 @@ CertificateCheck check_certificate(const Composite& surface, const Certificate& 
     if (!result.faults.empty()) return result;
 
     const double count = double(all.triangle_count());
-    constexpr std::size_t block = 4096;
+    constexpr std::size_t block = 512;
     for (std::size_t m = 0; m < all.patches.size(); ++m) {
         const CertifiedPatch& claim = all.patches[m];
         const Cover cover(surface[m].patch, claim);

@@ -104,7 +104,7 @@ int verify_certificate(const Options& options) {
         const Selection selection = select_patches(scene, r.file.surface);
         if (tolerance) r.limit = absolute_tolerance(*tolerance, finite_diagonal(scene, bounding_box(selection.patches)), options);
         ProgressBar bar("checking", options.quiet());
-        r.check = check_certificate(selection.patches, c, 20000, std::ref(bar));
+        r.check = check_certificate(selection.patches, c, 5000, std::ref(bar));
         if (r.check.faults.empty() && !options.words().empty())
             if (const std::string fault = mesh_fault(c, options.words().front()); !fault.empty()) r.check.faults.push_back(fault);
     }
