@@ -19,6 +19,7 @@ struct MeshPart {
     std::vector<std::array<std::uint32_t, 3>> triangles;  // corners, counter-clockwise about the outward side
     /// Corners, counter-clockwise in the domain, of triangles that would name a mesh vertex twice: segments, edges of other triangles.
     std::vector<std::array<std::uint32_t, 3>> left_out;
+    std::vector<double> bounds;                         // proved of each triangle, then of each left out; empty unless asked for
     bool flipped = false;                               // triangles wind against S_u x S_v
     double certified_error = 0;
 };

@@ -77,8 +77,15 @@ void refine(Refinement& refinement, const TessellationOptions& options) {
     give_up(refinement, options, 0);
 }
 
+/// Of the triangles, then of those left out, each in their order.
+void keep_bounds(const Refinement& refinement, const PatchMesh& p, std::vector<double>& bounds) {
+    for (const bool left_out : {false, true})
+        for (std::uint32_t i = 0; i < p.triangles.size(); ++i)
+            if (p.left_out(p.triangles[i]) == left_out) bounds.push_back(refinement.bound_of(p, i));
+}
+
 /// Keeps the vertices that a triangle names; number[v] becomes the mesh's number of vertex v, or kNone.
-Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinement& refinement, std::vector<std::uint32_t>& number) {
+Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinement& refinement, bool bounds, std::vector<std::uint32_t>& number) {
     Mesh mesh;
     number.assign(refinement.positions().size(), kNone);
     for (std::size_t m = 0; m < surface.size(); ++m) {
@@ -90,6 +97,7 @@ Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinemen
         part.vertex = p.vertex;
         part.flipped = topology.flipped[m];
         part.certified_error = refinement.worst_bound_of(m);
+        if (bounds) keep_bounds(refinement, p, part.bounds);
         for (const auto& t : p.triangles) {
             if (p.left_out(t)) {  // a collapsed edge: its two long sides are one mesh edge
                 part.left_out.push_back(t.corner);
@@ -190,7 +198,7 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     Tessellation result;
     result.tolerance = options.tolerance;
     std::vector<std::uint32_t> number;
-    result.mesh = to_mesh(surface, topology, refinement, number);
+    result.mesh = to_mesh(surface, topology, refinement, options.bounds, number);
     std::vector<std::array<std::uint32_t, 2>> open = refinement.open_edges();
     for (auto& e : open) e = {number[e[0]], number[e[1]]};
     result.topology = analyse(result.mesh, open);

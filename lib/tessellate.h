@@ -22,6 +22,7 @@ struct TessellationOptions {
     std::function<void(double)> progress;    // called from the calling thread with a fraction in [0,1]; may be empty
     double normal_deviation = 0;             // degrees, below 90: largest angle between a triangle's normal and those of the surface over it; 0: any
     Quality quality = Quality::fast;
+    bool bounds = false;                     // keep the bound of every triangle, MeshPart::bounds
 };
 
 struct SurfaceReport {

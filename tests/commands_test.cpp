@@ -32,10 +32,8 @@ TEST(Commands, UsageErrorsSuggest) {
     expect("eval " + scene("coons") + " --at 0,2", 65, "expected a point of the domain of S: 0 <= u <= 1");
     expect("eval " + scene("side_vertex") + " --at 0.6,0.6", 65, "u + v <= 1");
     expect("tessellate " + scene("coons"), 64, "-o is missing");
-    expect("tessellate " + scene("coons") + " -o x.glb", 64, "not built yet");
     expect("tessellate " + scene("coons") + " -o x.ply --quality best", 64, "expected one of: fast, optimal");
-    expect("tessellate " + scene("coons") + " -o x.ply --vertices free", 64, "not built yet");
-    expect("tessellate " + scene("coons") + " -o x.ply --certificate c.json", 64, "not built yet");
+    expect("tessellate " + scene("coons") + " -o x.ply --vertices free --normals 5", 64, "--vertices surface");
     expect("tessellate " + scene("coons") + " -o x.ply --tolerance 0", 64, "expected a positive number");
     expect("tessellate " + scene("coons") + " -o x.ply --tolerance 1px", 64, "needs a picture");
     expect("tessellate " + scene("coons") + " -o x.ply --measure angular", 64, "expected one of: geometric, parametric");

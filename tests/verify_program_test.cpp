@@ -77,7 +77,6 @@ TEST(VerifyProgram, ErrorsSayWhatIsWrong) {
     expect("verify " + t / "o.obj" + against + " --gap 0", 64, "--gap: found 0");
     expect("verify " + t / "o.obj" + against + " --tolerance 1px", 64, "needs a picture");
     expect("verify " + t / "o.obj" + against + " --surface x", 64, "expected one of");
-    expect("verify " + t / "o.obj" + against + " --certificate c", 64, "not built yet");
     expect("verify " + t / "o.xyz.obj" + against, 4, "No such file");
     expect("verify " + source_folder() + "/README.md" + against, 64, "expected .ply, .obj or .stl");
     expect("verify " + t / "none.obj" + against, 4, "No such file");

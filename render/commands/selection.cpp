@@ -16,10 +16,12 @@ void add_surface(Selection& all, const std::string& surface, const Composite& pa
 
 }  // namespace
 
-Selection select_patches(const Scene& scene, const Options& options) {
+Selection select_patches(const Scene& scene, const Options& options) { return select_patches(scene, options.value("--surface")); }
+
+Selection select_patches(const Scene& scene, const std::optional<std::string>& surface) {
     Selection all;
-    if (const auto name = options.value("--surface")) {
-        add_surface(all, *name, find_patches(scene, *name), false);
+    if (surface) {
+        add_surface(all, *surface, find_patches(scene, *surface), false);
         return all;
     }
     std::set<std::string> drawn;

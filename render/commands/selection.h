@@ -15,6 +15,8 @@ struct Selection {
 
 /// Those of --surface; otherwise of all surfaces that the scene draws. Throws Error(input) when there is none.
 Selection select_patches(const Scene& scene, const Options& options);
+/// The same for a name, or none.
+Selection select_patches(const Scene& scene, const std::optional<std::string>& surface);
 
 /// In scene units; `diagonal` is what relative ones are relative to. Throws Error(usage) for pixels.
 double absolute_tolerance(const Tolerance& t, double diagonal, const Options& options);

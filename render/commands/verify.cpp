@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "commands/selection.h"
+#include "commands/verify_certificate.h"
 #include "error.h"
 #include "io/mesh_reader.h"
 #include "json.h"
@@ -20,6 +21,7 @@ namespace isoparm {
 namespace {
 
 constexpr const char* kHelp = R"(usage: isoparm verify MESH --against SCENE [--surface S] [--tolerance T] [--watertight] [--manifold] [--json] ...
+       isoparm verify --certificate FILE --against SCENE [MESH] [--tolerance T] [--json]
 
 How far is a mesh, made by any program, from the surfaces of a scene? Tells an interval that holds the largest distance of
 a point of the surfaces from the mesh, and one for a point of the mesh from the surfaces; both are proved, with every
@@ -44,6 +46,11 @@ limits            exit code 2 when one is exceeded, or cannot be decided within 
 --weld            vertices with exactly equal coordinates become one in .ply and .obj too
 --junctions D     how near a vertex lies to an edge in a T-junction, in scene units (1e-6 of the mesh's size)
 --json            all numbers as JSON
+
+--certificate F   checks a file that tessellate --certificate wrote, by little code that has nothing in common with the code that made
+                  the proof: that its triangles cover the surfaces once, and that each is within its bound of them; and
+                  that MESH, if given, is the mesh it is of. Knows the surface and parameters by itself. Exit code 2 when
+                  anything is not proved; what, and where, is listed
 --quiet           no messages; --threads N  at most N threads: the result is the same for every N
 
 exit codes        0, 2 (above), 4 a file cannot be read, 64 usage, 65 bad mesh or scene
@@ -185,7 +192,8 @@ void print_text(std::ostream& out, const Report& r) {
 int run(const std::vector<std::string>& arguments) {
     const Options options("verify", arguments,
                           {{"--against", true}, {"--surface", true}, {"--set", true}, {"--tolerance", true}, {"--watertight", false}, {"--manifold", false}, {"--gap", true}, {"--max-triangles", true},
-                           {"--weld", false}, {"--junctions", true}, {"--json", false}, {"--certificate", true, "certificate files are not written yet"}});
+                           {"--weld", false}, {"--junctions", true}, {"--json", false}, {"--certificate", true}});
+    if (options.has("--certificate")) return verify_certificate(options);
     if (options.words().size() != 1) options.fail("found " + std::to_string(options.words().size()) + " file names, expected one mesh");
     Report r;
     r.path = options.words().front();

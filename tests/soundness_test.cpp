@@ -1,0 +1,101 @@
+// No bound of a triangle is below what dense samples show, over random triangles of every type of surface, large and small, inside and at corners.
+// ISOPARM_TRIANGLES=N sets how many in all (6000); a million take some minutes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+
+#include "bound_cell.h"
+#include "samples.h"
+
+namespace isoparm::tests {
+namespace {
+
+struct Tally {
+    std::size_t triangles = 0, unbounded = 0, quiet = 0;
+    std::size_t violations = 0, within_one_percent = 0;  // the second: bounds that would be wrong were they 1 % smaller
+    std::string first;
+};
+
+/// Three corners in one cell between breaks, counter-clockwise; on its border every now and then.
+std::array<Vec2, 3> random_triangle(Random& random, const Patch& patch, const Box& cell) {
+    const bool triangle = patch.domain() == Domain::triangle;
+    const double size = std::pow(2.0, -random.number(0, 12)), x = random.number(), y = random.number();
+    std::array<Vec2, 3> p;
+    for (;;) {
+        for (Vec2& c : p) {
+            double a = std::clamp(x + size * random.number(-0.5, 0.5), 0.0, 1.0), b = std::clamp(y + size * random.number(-0.5, 0.5), 0.0, 1.0);
+            if (random.integer(0, 30) == 0) a = random.integer(0, 1);
+            if (random.integer(0, 30) == 0) b = random.integer(0, 1);
+            c = {cell.u.lo + a * (cell.u.hi - cell.u.lo), cell.v.lo + b * (cell.v.hi - cell.v.lo)};
+            if (triangle && c.x + c.y > 1) c = {1 - c.x, 1 - c.y};
+            c = {std::clamp(c.x, cell.u.lo, cell.u.hi), std::clamp(c.y, cell.v.lo, cell.v.hi)};
+        }
+        const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
+        if (area < 0) std::swap(p[1], p[2]);
+        const auto outside = [&](const Vec2& c) { return triangle && c.x + c.y > 1; };
+        if (area != 0 && !outside(p[0]) && !outside(p[1]) && !outside(p[2])) return p;
+    }
+}
+
+/// The bounds of one triangle against n points a side.
+void look_at(const Patch& patch, const BoundCell& root, Random& random, const std::array<Vec2, 3>& uv, double rounding, Tally& tally) {
+    CornerData data;
+    data.uv = uv, data.slack = rounding;
+    for (int k = 0; k < 3; ++k) data.points[k] = patch.point(uv[k].x, uv[k].y);
+    const TriangleBound own = bound_triangle(patch, uv, data.points);
+    const BoundCell* cell = &root;
+    const TriangleBound b = BoundCell::bound(patch, cell, data, own.parametric * random.number(), Measure::geometric);
+    ++tally.triangles, tally.quiet += b.quiet, tally.unbounded += !std::isfinite(std::min(own.parametric, b.parametric));
+    bool wrong = false, tight = false;
+    const auto compare = [&](double seen, double bound) {
+        wrong = wrong || seen > bound * (1 + 1e-12) + 4 * rounding;
+        tight = tight || (seen > 0.99 * bound + 4 * rounding && bound > 1e4 * rounding);
+    };
+    constexpr int n = 12;
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; i + j <= n; ++j) {
+            const double l[3] = {double(i) / n, double(j) / n, double(n - i - j) / n};
+            Vec2 q;
+            Point flat;
+            for (int k = 0; k < 3; ++k) q = {q.x + l[k] * uv[k].x, q.y + l[k] * uv[k].y}, flat += l[k] * data.points[k];
+            const Point d = patch.point(q.x, q.y) - flat;
+            compare(length(d), own.parametric), compare(length(d), b.parametric);
+            if (!b.quiet) continue;
+            compare(std::fabs(dot(b.unit, d)), b.normal);
+            for (int k = 0; k < 3; ++k)
+                if (l[(k + 2) % 3] == 0) compare(std::fabs(dot(normalized(cross(b.unit, data.points[(k + 1) % 3] - data.points[k])), d)), b.across[k]);
+        }
+    tally.violations += wrong, tally.within_one_percent += tight;
+    if (wrong && tally.first.empty())
+        for (const Vec2& p : uv) tally.first += "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ") ";
+}
+
+TEST(Soundness, NoBoundIsBelowWhatDenseSamplesShow) {
+    const char* wanted = std::getenv("ISOPARM_TRIANGLES");
+    const std::size_t each = std::max<std::size_t>(1, (wanted ? std::strtoul(wanted, nullptr, 10) : 6000) / patch_types().size() + 1), of_patch = 50;
+    Tally all;
+    for (const PatchType& type : patch_types()) {
+        Tally tally;
+        for (std::uint64_t seed = 70000; tally.triangles < each; ++seed) {
+            Random random(seed);
+            const Patch patch = type.make(random).patch;
+            const auto us = patch.lines_u(), vs = patch.lines_v();
+            const std::size_t i = std::size_t(random.integer(0, int(us.size()) - 2)), j = std::size_t(random.integer(0, int(vs.size()) - 2));
+            const Box box{{us[i], us[i + 1]}, {vs[j], vs[j + 1]}};
+            if (patch.domain() == Domain::triangle && us[i] + vs[j] >= 1) continue;
+            const BoundCell root(patch, box);
+            const double rounding = 1e-13 * size_of_sample(patch);
+            for (std::size_t k = 0; k < of_patch && tally.triangles < each; ++k) look_at(patch, root, random, random_triangle(random, patch, box), rounding, tally);
+        }
+        EXPECT_EQ(tally.violations, 0u) << type.name << ", the first: " << tally.first;
+        all.triangles += tally.triangles, all.violations += tally.violations, all.quiet += tally.quiet, all.unbounded += tally.unbounded, all.within_one_percent += tally.within_one_percent;
+    }
+    // Were all bounds 1 % smaller, this test would fail this often.
+    EXPECT_GT(all.within_one_percent, all.triangles / 200);
+    std::printf("%zu triangles: %zu violations; %zu bounds would be violated if they were 1 %% smaller; %zu quiet, %zu without a bound\n", all.triangles, all.violations, all.within_one_percent, all.quiet, all.unbounded);
+}
+
+}  // namespace
+}  // namespace isoparm::tests
