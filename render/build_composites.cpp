@@ -78,7 +78,7 @@ BuiltSurface build_file(const Json& j, SceneBuilder& scene) {
     const Json path = j.at("path", "the name of a .bv file, relative to the scene");
     const std::string& name = scene.values().text(path, "the name of a .bv file, relative to the scene");
     const std::filesystem::path file = std::filesystem::path(j.file()).parent_path() / name;
-    if (extension_of(file) != ".bv") path.expected("a file that ends in .bv (other formats are not built yet)");
+    if (extension_of(file) != ".bv") path.expected("a file that ends in .bv (other formats are not read)");
     std::error_code code;  // a pipe would wait, a device never end
     if (std::filesystem::exists(file, code) && !std::filesystem::is_regular_file(file, code)) {
         path.fail("found " + std::string(std::filesystem::is_directory(file, code) ? "a folder" : "a pipe or device") + ", expected a regular file");

@@ -19,7 +19,6 @@ public:
     struct Known {
         const char* name;  // "--tolerance", "-o"
         bool takes_value;
-        const char* not_built = nullptr;  // known from the contract, refused with this reason
     };
     Options(const char* command, const std::vector<std::string>& arguments, std::vector<Known> known);
 
