@@ -7,7 +7,7 @@ namespace isoparm {
 namespace {
 
 constexpr int kSamples = Bends::samples;
-constexpr double kUse = 0.8;          // of the tolerance: the rest is left to third derivatives and to neighbours
+constexpr double kUse = 0.84;          // of the tolerance: the rest is left to third derivatives and to neighbours
 constexpr double kBisected = 1.7;     // what a triangle above the tolerance costs: bisection overshoots
 constexpr double kFew = 1.05, kMany = 0.75;  // of the vertices wanted on a line
 constexpr double kPeak = 64;          // times the median of all samples

@@ -36,7 +36,6 @@ FreePatch::FreePatch(const Patch& patch, const PatchMesh& mesh, const std::vecto
         const PatchTriangle& from = mesh.triangles[i];
         FreeTriangle& t = triangles_[i];
         t.corner = from.corner, t.cell = from.cell, t.proof = from.proof, t.proved = true, t.left_out = mesh.left_out(from);
-        Vec2 middle;
         for (int k = 0; k < 3; ++k) {
             const auto& side = mesh.edges[from.edge[k]].side;
             t.beside[k] = side[0] == i ? side[1] : side[0];
@@ -44,11 +43,8 @@ FreePatch::FreePatch(const Patch& patch, const PatchMesh& mesh, const std::vecto
             c.triangle = i;
             // Where second derivatives have no bound, proofs cost too much to try.
             if (t.left_out || !t.cell->model().bounded) c.freedom = Freedom::fixed;
-            middle.x += c.uv.x / 3, middle.y += c.uv.y / 3;
         }
-        // Cells are in the order of the lines between breaks, u-major.
-        const auto above = [](const std::vector<double>& breaks, double x) { return std::size_t(std::upper_bound(breaks.begin(), breaks.end(), x) - breaks.begin()); };
-        t.root = mesh.cells[above(breaks_u_, middle.x) * (breaks_v_.size() + 1) + above(breaks_v_, middle.y)].get();
+        t.root = mesh.root_of(t.corner);
         if (!t.left_out) t.own = estimate_of(places(t.corner), t);
     }
     begin();

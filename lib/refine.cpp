@@ -79,6 +79,13 @@ bool Refinement::bound_and_mark() {
     for_all(patches_.size(), [&](std::size_t m) { return patches_[m].fresh.size(); }, [&](std::size_t m, std::size_t i) {
         bound(patches_[m], std::uint32_t(m), patches_[m].triangles[patches_[m].fresh[i]]);
     });
+    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
+        PatchMesh& mesh = patches_[m];
+        for (const auto i : mesh.fresh) {
+            const PatchTriangle& t = mesh.triangles[i];
+            if (!(t.proof.own(measure_) + mesh.slack_of(t) <= tolerance_)) flip_any(mesh, std::uint32_t(m), i, false);
+        }
+    });
     bool done = true;
     predicted_ = double(triangle_count());
     worst_bound_ = 0, unbounded_ = 0;
@@ -150,6 +157,11 @@ bool Refinement::mark_with_neighbours() {
         PatchTriangle& t = patches_[m].triangles[i];
         t.settled = t.settled || bound_of(patches_[m], std::uint32_t(i)) <= tolerance_;
         fails[m][i] = !t.settled;
+    });
+    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
+        PatchMesh& mesh = patches_[m];
+        for (std::uint32_t i = 0; i < fails[m].size(); ++i)
+            if (fails[m][i]) fails[m][i] = !(bound_of(mesh, i) <= tolerance_) && !flip_any(mesh, std::uint32_t(m), i, true);
     });
     bool any = false;
     for (std::size_t m = 0; m < patches_.size(); ++m)

@@ -1,8 +1,8 @@
 // refine.h -- the triangulation of a composite while it is being refined; internal to tessellate.cpp.
 //
 // Every patch has its own vertices (parameters), edges and triangles; edges on a rim hang on nodes of that rim, which all
-// patches around it share. Edges are only ever bisected, so a mark on an edge is all that neighbours need to know. Every round
-// touches only what is new: fresh triangles, marked edges and the triangles beside them.
+// patches around it share. Edges are bisected, so a mark on an edge is all that neighbours need to know; inside a cell, an edge may
+// be turned first where that is enough. Every round touches only what is new: fresh triangles, marked edges and the triangles beside them.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -66,6 +66,8 @@ struct PatchMesh {
     }
     /// Along a break of the patch, where the surface may jump by the rounding of its curves' breaks.
     bool on_break(const PatchEdge& e) const;
+    /// The cell between breaks that holds a triangle.
+    const BoundCell* root_of(const std::array<std::uint32_t, 3>& corner) const;
     /// At least the distance of a corner of the triangle from the surface.
     double slack_of(const PatchTriangle& t) const;
 };
@@ -80,7 +82,8 @@ public:
     Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most = 1e6,
                double turn = std::numeric_limits<double>::infinity());
 
-    /// Bounds all triangles that have no bound and marks the worst edge of those above the tolerance; true when none is.
+    /// Bounds all triangles that have no bound and marks the worst edge of those above the tolerance, unless turning an edge mends them;
+    /// true when none is.
     /// Also marks edges whose two ends are one vertex without being collapsed.
     bool bound_and_mark();
     /// Geometric bounds need the neighbours: marks triangles that are above the tolerance with them. False when there is none.
@@ -140,6 +143,8 @@ private:
     void measure_slack(std::uint32_t member, std::size_t first);
     void collect_slack(const std::vector<std::size_t>& first);
     void bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t) const;
+    bool flip(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, int edge, bool with_neighbours) const;
+    bool flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, bool with_neighbours) const;
     void mark(PatchMesh& mesh, std::uint32_t edge);
 
     const Composite& surface_;

@@ -35,6 +35,7 @@ Options::Options(const char* command, const std::vector<std::string>& arguments,
             for (const Known& o : known) names.push_back(o.name);
             fail("unknown option " + quoted(name) + did_you_mean(name, names));
         }
+        if (k->instead) fail(name + " is not known here: " + k->instead);
         if (!k->takes_value && equals != std::string::npos) fail(name + " takes no value");
         if (k->takes_value && equals == std::string::npos && i + 1 == arguments.size()) fail(name + " needs a value");
         given_[name].push_back(!k->takes_value ? "" : equals != std::string::npos ? a.substr(equals + 1) : arguments[++i]);

@@ -19,6 +19,7 @@ public:
     struct Known {
         const char* name;  // "--tolerance", "-o"
         bool takes_value;
+        const char* instead = nullptr;  // of other programs, refused with this advice
     };
     Options(const char* command, const std::vector<std::string>& arguments, std::vector<Known> known);
 
