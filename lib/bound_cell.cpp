@@ -203,9 +203,9 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     const ThirdDerivatives third{s.t};
     const auto on_edge = [&](int k) {
         const Vec2 &from = p[k], &to = p[kNext[k]], e{to.x - from.x, to.y - from.y};
-        const auto& r = s.t_rad;
+        const std::array<double, 4> r = least ? std::array<double, 4>{} : s.t_rad;
         const double off = uu[k] * (model[0] + r[0] * ru + r[1] * rv) + 2 * std::fabs(uv[k]) * (model[1] + r[1] * ru + r[2] * rv) + vv[k] * (model[2] + r[2] * ru + r[3] * rv);
-        return EdgeBend{b[k] + third(e, {0.5 * (from.x + to.x) - mu, 0.5 * (from.y + to.y) - mv}), 0.5 * third(e, e), std::max(0.0, off) + 8 * noise[k]};
+        return EdgeBend{b[k] + third(e, {0.5 * ((from.x - mu) + (to.x - mu)), 0.5 * ((from.y - mv) + (to.y - mv))}), 0.5 * third(e, e), std::max(0.0, off) + 8 * noise[k]};
     };
     std::array<double, 3> across, lens;  // across: at least |inward . H[e_k,e_k]| as far as the edge's deviation goes
     bool quiet = result.tilt <= 1e-3;
@@ -220,7 +220,7 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     if (!quiet || !lenses_apart(lens, side, twice_area) || !keeps_orientation(n, x, b, q, bend, result.tilt)) return result;
     result.quiet = true;
     std::array<double, 4> vague;
-    for (int k = 0; k < 4; ++k) vague[k] = least ? 0 : s.t_rad[k];
+    for (int k = 0; k < 4; ++k) vague[k] = least ? -s.t_rad[k] : s.t_rad[k];
     const CubicForm cubic(n, bn, s.t, p, {mu, mv});
     const std::array<double, 3> off = stray(vague);
     const double rounding = 8 * (noise[0] + noise[1] + noise[2]) + result.tilt * result.parametric;

@@ -76,6 +76,9 @@ std::vector<std::array<std::uint32_t, 3>> neighbours_in(const MeshPart& part) {
         for (auto h = start[low]; h < next[low]; ++h)
             if (halves[h][0] == high) {
                 const auto other = halves[h][1];
+                const auto from = [&](std::uint32_t i) { return part.triangles[i / 3][i % 3]; };
+                const bool free = beside[half / 3][half % 3] == kNobody && beside[other / 3][other % 3] == kNobody;
+                if (!free || from(half) == from(other)) continue;  // no triangulation of a domain
                 beside[half / 3][half % 3] = other / 3, beside[other / 3][other % 3] = half / 3;
             }
         halves[next[low]++] = {high, half};

@@ -46,7 +46,7 @@ Estimate estimate(const SecondDerivatives& s, const Places& places) {
         const Vec2 &from = p[k], &to = p[kNext[k]], e{to.x - from.x, to.y - from.y};
         b[k] = e.x * e.x * h[0] + 2 * e.x * e.y * h[1] + e.y * e.y * h[2];
         q[k] = stray.x * e.x * e.x + stray.y * e.y * e.y, bend[k] = length(b[k]) + q[k], bn[k] = dot(n, b[k]);
-        const EdgeBend edge{b[k] + third(e, {0.5 * (from.x + to.x) - m.x, 0.5 * (from.y + to.y) - m.y}), 0.5 * third(e, e)};
+        const EdgeBend edge{b[k] + third(e, {0.5 * ((from.x - m.x) + (to.x - m.x)), 0.5 * ((from.y - m.y) + (to.y - m.y))}), 0.5 * third(e, e)};
         const double across = edge.along(cross(n, x[k]) / side[k]), any = edge.largest();
         result.across[k] = across / 8;
         lens[k] = (across + 0.32 * edge.along(n)) * side[k] / (2 * side[k] - any);

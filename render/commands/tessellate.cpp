@@ -250,11 +250,12 @@ int run(const std::vector<std::string>& arguments) {
                                            to_text(tolerance) + ", " + std::to_string(result.topology.t_junctions) + " T-junctions, " +
                                            std::to_string(result.topology.non_manifold_edges) + " non-manifold edges; nothing was written");
     }
+    // The largest file first: when it cannot be written, the old mesh is left as it was.
+    if (certificate) write_atomically(*options.value("--certificate"), [&](std::ostream& out) { write_certificate(out, *certificate); });
     const auto start = std::chrono::steady_clock::now();
     if (glb) write_atomically(output, [&](std::ostream& out) { write_glb(out, result.mesh, selection.patches, glb_surfaces(scene, selection)); });
     else write_mesh(output, result.mesh, mesh_comment(scene, result));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (certificate) write_atomically(*options.value("--certificate"), [&](std::ostream& out) { write_certificate(out, *certificate); });
     if (const auto report = options.value("--report")) {
         const auto write = [&](std::ostream& out) { write_report(out, result, selection, measure, quality, free, moved, seconds); };
         if (*report == "-") write(std::cout);
