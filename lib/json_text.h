@@ -5,20 +5,20 @@
 #include <string>
 
 #include "error.h"
+#include "printable_text.h"
 #include "scalar/vec.h"
 
 namespace isoparm {
 
+/// Always UTF-8: bytes that are none become U+FFFD.
 inline std::string json_text(const std::string& text) {
-    static constexpr char hex[] = "0123456789abcdef";
     std::string r = "\"";
-    for (const char c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\') r += '\\', r += c;
-        else if (c == '\n') r += "\\n";
-        else if (code < 0x20) r += std::string("\\u00") + hex[code >> 4] + hex[code & 15];
-        else r += c;
-    }
+    for_each_character(text, [&](const std::string& bytes, int control) {
+        if (bytes == "\"" || bytes == "\\") r += "\\" + bytes;
+        else if (control == '\n') r += "\\n";
+        else if (control >= 0) r += "\\u00" + hex_of(control);
+        else r += bytes;
+    });
     return r + "\"";
 }
 inline std::string json_text(double x) { return std::isfinite(x) ? to_text(x) : "null"; }

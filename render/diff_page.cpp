@@ -11,6 +11,7 @@
 #include "diff_report.h"
 #include "error.h"
 #include "html_text.h"
+#include "printable_text.h"
 
 namespace isoparm {
 namespace {
@@ -152,7 +153,7 @@ std::string table(const ImageDiff& d) {
     std::string text = "<div class=\"scroll\"><table><thead><tr><th>channel</th><th class=\"n\">max</th><th class=\"n\">mean</th><th class=\"n\">RMS</th><th class=\"n\">PSNR</th><th class=\"n\">99 %</th><th class=\"n\">pixels above limit</th><th class=\"n\">NaN, Inf</th><th>worst</th></tr></thead><tbody>\n";
     for (const PartDiff& p : d.parts)
         for (const ChannelDiff& c : p.channels) {
-            text += "<tr><td>" + escaped(p.name.empty() || d.parts.size() < 2 ? c.name : p.name + "/" + c.name) + "</td>";
+            text += "<tr><td>" + escaped(printable(p.name.empty() || d.parts.size() < 2 ? c.name : p.name + "/" + c.name)) + "</td>";
             for (const double x : {c.max, c.mean(), c.rms(), c.psnr(), c.percentile(0.99)}) text += "<td class=\"n\">" + brief(x) + "</td>";
             text += "<td class=\"n\">" + std::to_string(c.failing) + "</td><td class=\"n\">" + std::to_string(c.nonfinite) + "</td><td>" +
                     (c.differing > 0 ? brief(c.worst.a) + " became " + brief(c.worst.b) + " at (" + std::to_string(c.worst.x) + "," + std::to_string(c.worst.y) + ")" : "") + "</td></tr>\n";
@@ -163,7 +164,7 @@ std::string table(const ImageDiff& d) {
         for (const PatchFailures& f : p.patches) {
             if (first) text += "<div class=\"scroll\"><table><thead><tr><th>channel</th><th class=\"n\">patch</th><th class=\"n\">pixels</th><th class=\"n\">worst</th><th>at</th><th>uv</th></tr></thead><tbody>\n";
             first = false;
-            text += "<tr><td>" + escaped(p.channels[f.channel].name) + "</td><td class=\"n\">" + std::to_string(f.patch) + "</td><td class=\"n\">" + std::to_string(f.pixels) + "</td><td class=\"n\">" + brief(f.difference) + "</td><td>(" +
+            text += "<tr><td>" + escaped(printable(p.channels[f.channel].name)) + "</td><td class=\"n\">" + std::to_string(f.patch) + "</td><td class=\"n\">" + std::to_string(f.pixels) + "</td><td class=\"n\">" + brief(f.difference) + "</td><td>(" +
                     std::to_string(f.worst.x) + "," + std::to_string(f.worst.y) + ")</td><td>(" + brief(f.u) + ", " + brief(f.v) + ")</td></tr>\n";
         }
     return first ? text : text + "</tbody></table></div>\n";
@@ -198,7 +199,7 @@ std::string diff_page(const std::vector<ImageDiff>& all, const DiffLimits& limit
         std::to_string(good) + " of " + std::to_string(all.size()) + " pass.</p>\n";
     for (std::size_t k = 0; k < all.size(); ++k) {
         const ImageDiff& d = all[k];
-        text += "<section data-pair=\"" + std::to_string(k + 1) + "\">\n<h2>" + escaped(d.b) + " <span class=\"soft\">against " + escaped(d.a) + "</span></h2>\n<p class=\"" + verdict_name(d.verdict) + "\">" + escaped(verdict_line(d, limits)) + "</p>\n";
+        text += "<section data-pair=\"" + std::to_string(k + 1) + "\">\n<h2>" + escaped(printable(d.b)) + " <span class=\"soft\">against " + escaped(printable(d.a)) + "</span></h2>\n<p class=\"" + verdict_name(d.verdict) + "\">" + escaped(verdict_line(d, limits)) + "</p>\n";
         text += d.figures;
         if (d.compared()) {
             text += "<p>max " + brief(d.max) + ", mean " + brief(d.mean) + ", RMS " + brief(d.rms) + ", PSNR " + brief(d.psnr) + (d.flip ? ", FLIP " + brief(*d.flip) : "") + (d.ssim ? ", SSIM " + brief(*d.ssim) : "") + "</p>\n" + histogram(d.parts) + table(d);

@@ -7,6 +7,7 @@
 
 #include "html_text.h"
 #include "json_text.h"
+#include "printable_text.h"
 
 namespace isoparm {
 namespace {
@@ -30,13 +31,13 @@ std::string percent(std::uint64_t part, std::uint64_t whole) { return brief(whol
 /// "N.Y: 12 px > 0.004, worst 0.031 at (412,88), patch 3, uv (0.51,0.02)"
 std::string patch_line(const PartDiff& p, const PatchFailures& f) {
     const ChannelDiff& c = p.channels[f.channel];
-    return c.name + ": " + std::to_string(f.pixels) + " px > " + brief(c.fail) + ", worst " + brief(f.difference) + " at " + at(f.worst) + (f.patch >= 0 ? ", patch " + std::to_string(f.patch) : ", no patch") + ", uv (" + brief(f.u) + "," + brief(f.v) + ")";
+    return printable(c.name) + ": " + std::to_string(f.pixels) + " px > " + brief(c.fail) + ", worst " + brief(f.difference) + " at " + at(f.worst) + (f.patch >= 0 ? ", patch " + std::to_string(f.patch) : ", no patch") + ", uv (" + brief(f.u) + "," + brief(f.v) + ")";
 }
 
 void print_part(std::ostream& out, const PartDiff& p, bool named) {
-    if (named) out << "part " << (p.name.empty() ? "without a name" : p.name) << "\n";
+    if (named) out << "part " << (p.name.empty() ? "without a name" : printable(p.name)) << "\n";
     std::size_t longest = 7, equal = 0;
-    for (const ChannelDiff& c : p.channels) longest = std::max(longest, c.name.size());
+    for (const ChannelDiff& c : p.channels) longest = std::max(longest, printable(c.name).size());
     const auto differs = [](const ChannelDiff& c) { return c.differing > 0 || c.nonfinite > 0; };
     if (std::any_of(p.channels.begin(), p.channels.end(), differs))
         out << "  " << padded("channel", longest) << padded("max", 10) << padded("mean", 10) << padded("rms", 10) << padded("psnr", 8) << padded("99 %", 10) << padded("px > limit", 20) << "worst\n";
@@ -45,7 +46,7 @@ void print_part(std::ostream& out, const PartDiff& p, bool named) {
             ++equal;
             continue;
         }
-        out << "  " << padded(c.name, longest) << padded(brief(c.max), 10) << padded(brief(c.mean()), 10) << padded(brief(c.rms()), 10) << padded(brief(c.psnr()), 8) << padded(brief(c.percentile(0.99)), 10)
+        out << "  " << padded(printable(c.name), longest) << padded(brief(c.max), 10) << padded(brief(c.mean()), 10) << padded(brief(c.rms()), 10) << padded(brief(c.psnr()), 8) << padded(brief(c.percentile(0.99)), 10)
             << padded(std::to_string(c.failing) + " > " + brief(c.fail), 20) << brief(c.worst.a) << " became " << brief(c.worst.b) << " at " << at(c.worst);
         if (c.nonfinite > 0) out << "; " << c.nonfinite << " px with NaN or Inf";
         out << "\n";
@@ -105,7 +106,7 @@ DiffVerdict worst_of(const std::vector<ImageDiff>& all) {
 
 std::string verdict_line(const ImageDiff& d, const DiffLimits& limits) {
     std::string why;
-    for (const std::string& r : d.reasons) why += (why.empty() ? "" : "; ") + r;
+    for (const std::string& r : d.reasons) why += (why.empty() ? "" : "; ") + printable(r);
     if (d.verdict == DiffVerdict::not_comparable) return "NOT COMPARABLE: " + why;
     if (d.verdict == DiffVerdict::unreadable) return "ERROR: " + why;
     if (d.verdict == DiffVerdict::missing) return "FAIL: " + why;
@@ -119,7 +120,7 @@ std::string verdict_line(const ImageDiff& d, const DiffLimits& limits) {
 }
 
 void print_diff_text(std::ostream& out, const ImageDiff& d, const DiffLimits& limits) {
-    out << d.a << " and " << d.b << "\n";
+    out << printable(d.a) << " and " << printable(d.b) << "\n";
     for (const PartDiff& p : d.parts) print_part(out, p, d.parts.size() > 1);
     if (d.compared()) {
         out << "  all: max " << brief(d.max) << ", mean " << brief(d.mean) << ", rms " << brief(d.rms) << ", psnr " << brief(d.psnr);
@@ -151,18 +152,13 @@ std::string diff_json(const std::vector<ImageDiff>& all) {
 }
 
 std::string diff_junit(const std::vector<ImageDiff>& all, const DiffLimits& limits) {
-    const auto printable = [](std::string text) {  // XML has no other control characters
-        for (char& c : text)
-            if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') c = '?';
-        return escaped(text);
-    };
     std::size_t failures = 0, errors = 0;
     std::string cases;
     for (const ImageDiff& d : all) {
         const bool error = d.verdict > DiffVerdict::fail, failure = d.verdict == DiffVerdict::fail || d.verdict == DiffVerdict::missing;
         failures += failure, errors += error;
-        cases += "  <testcase classname=\"isoparm.diff\" name=\"" + printable(d.b) + "\">\n";
-        const std::string line = printable(verdict_line(d, limits));
+        cases += "  <testcase classname=\"isoparm.diff\" name=\"" + escaped(printable(d.b)) + "\">\n";
+        const std::string line = escaped(verdict_line(d, limits));
         if (error || failure) cases += std::string("    <") + (error ? "error" : "failure") + " type=\"" + verdict_name(d.verdict) + "\" message=\"" + line + "\"/>\n";
         else if (d.verdict == DiffVerdict::warn) cases += "    <system-out>" + line + "</system-out>\n";
         cases += "  </testcase>\n";

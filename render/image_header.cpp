@@ -215,14 +215,19 @@ const std::vector<std::pair<std::string, std::string>>& readable_formats() {
     return all;
 }
 
+std::string format_of_name(const std::string& path) {
+    const std::string extension = extension_of(path);
+    for (const auto& [name, format] : readable_formats())
+        if (extension == "." + name) return format;
+    return "";
+}
+
 ImageHeader read_image_header(std::string_view bytes, std::uint64_t size, const std::string& path) {
     ImageHeader h;
     std::vector<std::string> names;
     const std::string extension = extension_of(path);
-    for (const auto& [name, format] : readable_formats()) {
-        if (extension == "." + name) h.format = format;
-        names.push_back(name);
-    }
+    h.format = format_of_name(path);
+    for (const auto& [name, format] : readable_formats()) names.push_back(name);
     if (h.format.empty()) throw Error(ErrorKind::io, path + ": found " + (extension.empty() ? "no extension" : "the extension " + quoted(extension)) + ", expected an image: " + listed(names));
     Reader r{bytes, path};
     if (size == 0) r.fail("the file is empty");

@@ -22,6 +22,9 @@ constexpr std::size_t kHeaderBytes = std::size_t{1} << 20;
 /// The extensions that are read, each with its format: {"exr", "openexr"}.
 const std::vector<std::pair<std::string, std::string>>& readable_formats();
 
+/// The format that the extension of a path tells; "": none that is read.
+std::string format_of_name(const std::string& path);
+
 /// `bytes`: the first kHeaderBytes of the file, or all of it; `size`: of the file; `path` is for messages. The extension of the path and the
 /// bytes must agree. Throws Error(io): what was found, and what was expected.
 ImageHeader read_image_header(std::string_view bytes, std::uint64_t size, const std::string& path);

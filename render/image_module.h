@@ -69,6 +69,7 @@ int isoparm_image_put(IsoparmImageWriter* file, int layer, int first, int rows, 
 /// Closes and reads back; frees the writer in any case.
 int isoparm_image_finish(IsoparmImageWriter* file, IsoparmImageError* error);
 
-/// At most so many threads in OpenImageIO and OpenEXR; with 1, none is ever started, so that the process may fork.
+/// At most so many threads in OpenImageIO and OpenEXR. With 1, those that were started have ended when it returns (it waits 5 seconds at most),
+/// and none is started later, so that the process may fork.
 void isoparm_image_threads(int threads);
 }

@@ -1,14 +1,19 @@
 // image_oiio.cpp -- the module isoparm_image.so: the only file that includes OpenImageIO. Loaded when an image is first
 // read or written, because linking OpenImageIO costs half a second at every start.
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/thread.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -32,6 +37,21 @@ int guarded(IsoparmImageError* error, const auto& work) {
         std::strncpy(error->text, "unknown error", sizeof error->text);
     }
     return 1;
+}
+
+std::size_t threads_of_process() {
+    std::error_code code;
+    std::size_t n = 0;
+    for (std::filesystem::directory_iterator at("/proc/self/task", code), end; !code && at != end; at.increment(code)) ++n;
+    return n;
+}
+
+/// OpenImageIO detaches the workers it dismisses: they still take and release a lock of its pool after attribute() has returned, and
+/// a fork() meanwhile would leave the child a lock that nobody releases. Hence this waits until the process has at most `threads`
+/// threads; 5 seconds at most, as threads may have been started by others.
+void await_end(std::size_t threads) {
+    const auto last = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+    while (threads_of_process() > threads && std::chrono::steady_clock::now() < last) std::this_thread::sleep_for(std::chrono::microseconds(200));
 }
 
 std::unique_ptr<OIIO::ImageInput> opened(const char* file) {
@@ -411,7 +431,10 @@ int isoparm_image_finish(IsoparmImageWriter* file, IsoparmImageError* error) {
 }
 
 void isoparm_image_threads(int threads) {
+    const int workers = OIIO::default_thread_pool()->size();  // asking makes the pool, if there was none
+    const std::size_t before = workers > 0 ? threads_of_process() : 0;
     OIIO::attribute("threads", threads);
     OIIO::attribute("exr_threads", threads == 1 ? -1 : threads);
     (void)OIIO::ImageInput::create("openexr");  // lists its formats now, once, and not in every child
+    if (threads == 1 && workers > 0) await_end(before > std::size_t(workers) ? before - std::size_t(workers) : 1);
 }

@@ -53,6 +53,9 @@ TEST(CertificateProgram, SurfaceAndParametersAreTheCertificatesOwn) {
     const TemporaryFolder t;
     ASSERT_EQ(run("tessellate " + scene("teapot") + " --surface teapot/teapot#7 --quiet --tolerance 1e-2 --certificate " + t / "c.json" + " -o " + t / "m.ply").code, 0);
     expect("verify --certificate " + t / "c.json" + " --against " + scene("teapot") + " " + t / "m.ply", 0, "1 patches");
+    const std::string again = "tessellate " + scene("teapot") + " --surface teapot/teapot#7 --quiet --tolerance 1e-2 --certificate - -o " + t / "m.ply";
+    EXPECT_EQ(run(again).out, test::read_all(t / "c.json")) << "- is standard output";
+    expect(again + " --report -", 64, "both go to standard output");
     for (const char* o : {"--surface teapot", "--set a=1", "--gap 0.1", "--watertight"}) expect("verify --certificate " + t / "c.json" + " --against " + scene("teapot") + " " + o, 64, "does not go with --certificate");
     expect("verify --certificate " + t / "c.json", 64, "--against is missing");
     expect("tessellate " + scene("teapot") + " -o " + t / "m.ply --certificate " + t / "m.ply", 64, "too, expected another one");

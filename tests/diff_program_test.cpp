@@ -199,6 +199,79 @@ TEST_F(DiffProgram, FoldersArePairedByName) {
     EXPECT_EQ(diff("refs news").code, 0);
 }
 
+TEST_F(DiffProgram, ManyRunsNeverHang) {
+    for (int k = 0; k < 8; ++k) {
+        const auto outcome = diff("-q --max-seconds 5 a.exr a.exr");
+        ASSERT_EQ(outcome.code, 0) << "run " << k << ": " << outcome.err;
+    }
+}
+
+TEST_F(DiffProgram, LinkedFoldersAreComparedAndLoopsEnd) {
+    fs::create_directories(t / "refs");
+    fs::create_directories(t / "news");
+    fs::create_directories(t / "far");
+    fs::copy_file(t / "a.exr", t / "refs/a.exr"), fs::copy_file(t / "a.exr", t / "news/a.exr");
+    fs::copy_file(t / "b.exr", t / "far/x.exr");
+    fs::create_directory_symlink("../far", t / "news/linked");
+    fs::create_directory_symlink(".", t / "news/loop");
+    const auto outcome = diff("refs news");
+    EXPECT_EQ(outcome.code, 2) << outcome.out;
+    EXPECT_NE(outcome.out.find("news/linked/x.exr"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("2 images: 1 pass, 1 missing"), std::string::npos) << outcome.out;
+    fs::remove(t / "news/linked");
+    write_all(t / "news/w.webp", "RIFF");
+    const auto unread = diff("refs news");
+    EXPECT_EQ(unread.code, 0) << unread.out << unread.err;
+    EXPECT_NE(unread.err.find("1 images are of formats that are not read, and were not compared: news/w.webp"), std::string::npos) << unread.err;
+}
+
+TEST_F(DiffProgram, UpdateKeepsFormatsAndAlternatives) {
+    write_layers(t / "a.png", {bytes(0.2f, 0.4f, 0.6f)});
+    const std::string before = read_all(t / "a.png");
+    const auto other = diff("--update a.png a.exr");
+    EXPECT_EQ(other.code, 64) << other.err;
+    EXPECT_NE(other.err.find("expected files of one format; nothing was written"), std::string::npos) << other.err;
+    EXPECT_EQ(read_all(t / "a.png"), before);
+    EXPECT_EQ(diff("--update none.webp a.exr").code, 64);
+    EXPECT_FALSE(fs::exists(t / "none.webp"));
+
+    fs::create_directories(t / "news");
+    fs::copy_file(t / "a.png", t / "news/pic.altitude.png");
+    EXPECT_EQ(diff("news news").code, 0) << "pic.png does not exist: pic.altitude.png is no other reference for it";
+    EXPECT_EQ(diff("--update made/refs news").code, 0) << "a missing folder of references is made";
+    EXPECT_EQ(read_all(t / "made/refs/pic.altitude.png"), before);
+
+    write_layers(t / "made/refs/pic.png", {bytes(1, 1, 1)});
+    fs::copy_file(t / "a.png", t / "news/pic.png");
+    EXPECT_EQ(diff("made/refs made/refs").code, 0);
+    write_layers(t / "news/pic.altitude.png", {bytes(0, 0, 0)});
+    EXPECT_EQ(diff("--update made/refs news").code, 2);
+    EXPECT_EQ(read_all(t / "made/refs/pic.altitude.png"), before) << "an alternative is never written";
+    EXPECT_EQ(read_all(t / "made/refs/pic.png"), before);
+}
+
+TEST_F(DiffProgram, NamesArePrintedAsTextOnly) {
+    const std::string name = "x\x1b[2J\xff.exr";
+    fs::copy_file(t / "a.exr", t / name);
+    const std::string quoted_name = "'" + name + "'";
+    for (const std::string how : {"", "--json ", "--junit - ", "--html - "}) {
+        const auto outcome = diff(how + quoted_name + " b.exr");
+        EXPECT_EQ(outcome.code, 2) << outcome.err;
+        EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos) << how;
+        EXPECT_EQ(outcome.out.find('\xff'), std::string::npos) << how;
+    }
+    EXPECT_NE(diff(quoted_name + " b.exr").out.find("x\\x1b[2J\xef\xbf\xbd.exr and b.exr"), std::string::npos);
+    EXPECT_EQ(parsed(diff("--json " + quoted_name + " b.exr").out)["reference"].asString(), "x\x1b[2J\xef\xbf\xbd.exr");
+}
+
+TEST_F(DiffProgram, OneReportGoesToStandardOutput) {
+    const auto outcome = diff("--junit - a.exr b.exr");
+    EXPECT_EQ(outcome.out.rfind("<?xml", 0), 0u) << outcome.out;
+    EXPECT_FALSE(fs::exists(t / "-"));
+    EXPECT_EQ(diff("--junit - --json a.exr b.exr").code, 64);
+    EXPECT_EQ(diff("--junit - --html - a.exr b.exr").code, 64);
+}
+
 TEST_F(DiffProgram, TheSelftestFindsEveryChange) {
     const auto outcome = diff("--selftest -q");
     EXPECT_EQ(outcome.code, 0) << outcome.out;

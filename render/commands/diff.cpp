@@ -15,7 +15,9 @@
 #include "difference_image.h"
 #include "error.h"
 #include "image_diff.h"
+#include "image_header.h"
 #include "io/atomic_file.h"
+#include "printable_text.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -55,7 +57,7 @@ as in idiff (with one dash or two)
 --ppd X           pixels per degree for FLIP (67.02: a 4K screen 0.7 m wide, 0.7 m away)
 --flip WORD       auto (HDR-FLIP for images of floating point), ldr or hdr; --exposures START,STOP,N  for HDR-FLIP, in stops
 
---json            all numbers as JSON;  --junit FILE  as JUnit XML
+--json            all numbers as JSON;  --junit FILE  as JUnit XML; - is standard output
 --html FILE       one page: side by side, flicker, wipe, heat map, FLIP, histogram; for the first 50 pairs that do not pass
 --max-pixels N    refuse larger files (536870912);  --max-memory MIB  for decoding one (768);  --max-seconds S  (120)
 --quiet           as -q; --threads N  at most N threads: the result is the same for every N
@@ -179,9 +181,17 @@ ImageDiff compare_pair(const FolderPair& pair, const std::string& references, co
     return *best;
 }
 
+/// To standard output if the name is "-".
+void write_report(const Options& options, const std::string& option, const std::string& text) {
+    if (options.value(option).value_or("-") == "-") std::cout << text;
+    else write_atomically(*options.value(option), [&](std::ostream& out) { out << text; });
+}
+/// Is standard output taken, by --json or a report?
+bool output_is_taken(const Options& options) { return options.has("--json") || options.value("--junit") == "-" || options.value("--html") == "-"; }
+
 void tell(const ImageDiff& d, const DiffRequest& request, const Options& options) {
-    if (d.verdict == DiffVerdict::unreadable) std::fprintf(stderr, "isoparm: %s\n", d.reasons.front().c_str());
-    else if (!options.has("--json") && !options.quiet() && !options.has("-q")) print_diff_text(std::cout, d, request.limits);
+    if (d.verdict == DiffVerdict::unreadable) std::fprintf(stderr, "isoparm: %s\n", printable(d.reasons.front()).c_str());
+    else if (!output_is_taken(options) && !options.quiet() && !options.has("-q")) print_diff_text(std::cout, d, request.limits);
 }
 
 /// NEW becomes the reference, unless it is damaged or holds what never passes: then the verdict stays.
@@ -190,12 +200,12 @@ void update(ImageDiff& d, const std::string& reference, const std::string& image
     request.output.clear(), request.perceptual = false, request.preview = 0, request.mask.clear();
     request.limits.flip = request.limits.ssim = request.limits.rms = {};
     if (const ImageDiff self = compare_files(image, image, request); self.verdict != DiffVerdict::pass) {
-        if (!options.quiet()) std::fprintf(stderr, "isoparm: note: %s was not updated: %s\n", reference.c_str(), verdict_line(self, request.limits).c_str());
+        if (!options.quiet()) std::fprintf(stderr, "isoparm: note: %s was not updated: %s\n", printable(reference).c_str(), verdict_line(self, request.limits).c_str());
         d.verdict = std::max(d.verdict == DiffVerdict::missing ? DiffVerdict::pass : d.verdict, self.verdict);
         return;
     }
     replace_file(reference, image);
-    if (!options.quiet()) std::fprintf(stderr, "isoparm: note: %s was updated\n", reference.c_str());
+    if (!options.quiet()) std::fprintf(stderr, "isoparm: note: %s was updated\n", printable(reference).c_str());
     d.verdict = DiffVerdict::pass;
 }
 
@@ -203,7 +213,10 @@ std::vector<ImageDiff> compare_folders(const std::string& references, const std:
     std::vector<ImageDiff> all;
     int pictures = 0;
     const int preview = request.preview;
-    for (const FolderPair& pair : pair_folders(references, images)) {
+    const FolderPairs found = pair_folders(references, images);
+    if (!found.unread.empty() && !options.quiet() && !options.has("-q"))
+        std::fprintf(stderr, "isoparm: note: %zu images are of formats that are not read, and were not compared: %s%s\n", found.unread.size(), printable(found.unread.front()).c_str(), found.unread.size() > 1 ? ", ..." : "");
+    for (const FolderPair& pair : found.pairs) {
         request.preview = pictures < 50 ? preview : 0;
         all.push_back(compare_pair(pair, references, images, request));
         ImageDiff& d = all.back();
@@ -211,7 +224,10 @@ std::vector<ImageDiff> compare_folders(const std::string& references, const std:
         pictures += d.preview.has_value();
         make_figures(d);
         tell(d, request, options);
-        if (options.has("--update")) update(d, (fs::path(references) / pair.name).string(), pair.image, request, options);
+        if (!options.has("--update")) continue;
+        const std::string reference = (fs::path(references) / pair.name).string();
+        if (!pair.alternative) update(d, reference, pair.image, request, options);
+        else if (d.verdict != DiffVerdict::pass && !options.quiet()) std::fprintf(stderr, "isoparm: note: %s was not updated: its name is that of another reference\n", printable(reference).c_str());
     }
     if (all.empty()) throw Error(ErrorKind::io, references + " and " + images + ": found no images");
     return all;
@@ -247,7 +263,14 @@ void check_files(const Options& options, const DiffRequest& request, const std::
     }
     for (const char* name : {"--junit", "--html"})
         if (const auto file = options.value(name)) outputs.push_back({name, *file});
+    if (options.has("--json") + (options.value("--junit") == "-") + (options.value("--html") == "-") > 1) options.fail("found more than one of --json, --junit - and --html -, which all go to standard output");
     check_outputs(options, outputs, inputs);
+}
+
+/// NEW is copied byte by byte: under another extension it would be no image.
+void check_format(const Options& options, const std::string& reference, const std::string& image) {
+    const std::string old = format_of_name(reference), made = format_of_name(image);
+    if (old.empty() || old != made) options.fail("--update: found " + quoted(printable(image)) + " for the reference " + quoted(printable(reference)) + ", expected files of one format; nothing was written");
 }
 
 std::string summary(const std::vector<ImageDiff>& all) {
@@ -276,12 +299,14 @@ int run(const std::vector<std::string>& arguments) {
     if (options.words().size() != 2) options.fail("found " + std::to_string(options.words().size()) + " file names, expected a reference and a new image");
     const std::string &a = options.words()[0], &b = options.words()[1];
     std::error_code ignored;
-    const bool folders = fs::is_directory(a, ignored);
+    const bool made = options.has("--update") && !fs::exists(a, ignored);
+    const bool folders = fs::is_directory(made ? b : a, ignored);
     for (const std::string& path : {a, b})
-        if (!fs::exists(path, ignored) && !(options.has("--update") && path == a)) throw Error(ErrorKind::io, path + ": there is no such file or folder");
+        if (!fs::exists(path, ignored) && !(made && path == a)) throw Error(ErrorKind::io, path + ": there is no such file or folder");
     if (folders != fs::is_directory(b, ignored)) options.fail("found a folder and a file, expected two images or two folders");
     const DiffRequest request = read_request(options);
     check_files(options, request, a, b, folders);
+    if (options.has("--update") && !folders) check_format(options, a, b);
 
     std::vector<ImageDiff> all;
     if (folders) all = compare_folders(a, b, request, options);
@@ -292,9 +317,9 @@ int run(const std::vector<std::string>& arguments) {
         if (options.has("--update")) update(all.front(), a, b, request, options);
     }
     if (options.has("--json")) std::cout << (folders ? diff_json(all) : diff_json(all.front())) << "\n";
-    if (const auto file = options.value("--junit")) write_atomically(*file, [&](std::ostream& out) { out << diff_junit(all, request.limits); });
-    if (const auto file = options.value("--html")) write_atomically(*file, [&](std::ostream& out) { out << diff_page(all, request.limits); });
-    if (folders && !options.has("--json") && !options.quiet() && !options.has("-q")) std::cout << summary(all) << "\n";
+    if (options.has("--junit")) write_report(options, "--junit", diff_junit(all, request.limits));
+    if (options.has("--html")) write_report(options, "--html", diff_page(all, request.limits));
+    if (folders && !output_is_taken(options) && !options.quiet() && !options.has("-q")) std::cout << summary(all) << "\n";
     return exit_code(worst_of(all), options.has("--mismatch-fails"));
 }
 

@@ -54,7 +54,8 @@ that patches share are found and share their vertices.
                   surfaces (with the asymptotic optimum of triangles),
                   format_rounding (how far float32 moves points in .stl and .glb; part of certified_error); - is standard output
 --certificate F   a JSON file that lets isoparm verify --certificate prove the error again: parameters, bound and method of every triangle;
-                  it is checked before it is written. Some seconds for 100000 triangles, and 250 bytes for each
+                  it is checked before it is written. Some seconds for 100000 triangles, and 250 bytes for each;
+                  - is standard output
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
 --quiet           no messages; --threads N  at most N threads: the mesh is the same for every N
 )";
@@ -67,6 +68,7 @@ void check_output(const std::string& path, const Options& options) {
     std::vector<NamedFile> outputs{{"-o", path}};
     if (const auto report = options.value("--report")) outputs.push_back({"--report", *report});
     if (const auto certificate = options.value("--certificate")) outputs.push_back({"--certificate", *certificate});
+    if (options.value("--report") == "-" && options.value("--certificate") == "-") options.fail("--report - and --certificate - both go to standard output");
     check_outputs(options, outputs, {{"SCENE", options.scene_path()}});
 }
 
@@ -251,7 +253,11 @@ int run(const std::vector<std::string>& arguments) {
                                            std::to_string(result.topology.non_manifold_edges) + " non-manifold edges; nothing was written");
     }
     // The largest file first: when it cannot be written, the old mesh is left as it was.
-    if (certificate) write_atomically(*options.value("--certificate"), [&](std::ostream& out) { write_certificate(out, *certificate); });
+    if (certificate) {
+        const auto write = [&](std::ostream& out) { write_certificate(out, *certificate); };
+        if (options.value("--certificate") == "-") write(std::cout);
+        else write_atomically(*options.value("--certificate"), write);
+    }
     const auto start = std::chrono::steady_clock::now();
     if (glb) write_atomically(output, [&](std::ostream& out) { write_glb(out, result.mesh, selection.patches, glb_surfaces(scene, selection)); });
     else write_mesh(output, result.mesh, mesh_comment(scene, result));
