@@ -196,6 +196,17 @@ TEST(Subdivision, IsTheSameForEveryNumberOfThreads) {
     }
 }
 
+TEST(Subdivision, IsNotChangedByVerticesThatNoFaceHas) {
+    Cage cage = test::prism_cage();
+    const auto alone = make_subdivision(cage, Scheme::catmull_clark);
+    cage.positions.push_back({1e6, 1e6, 1e6});
+    const auto surface = make_subdivision(cage, Scheme::catmull_clark);
+    ASSERT_EQ(surface.patches.size(), alone.patches.size());
+    const Box box{{0, 1e-5}, {0, 1e-5}};
+    for (std::size_t k = 0; k < alone.patches.size(); ++k)
+        EXPECT_EQ(surface.patches[k].patch.enclose_points(box).x.hi, alone.patches[k].patch.enclose_points(box).x.hi);
+}
+
 void expect_refused(const Cage& cage, Scheme scheme, ErrorKind kind, const std::string& part) {
     try {
         make_subdivision(cage, scheme, 5000);
