@@ -15,7 +15,7 @@
 namespace isoparm {
 namespace {
 
-constexpr double kCore = 1e-9;                // of the cage's diagonal
+constexpr double kCore = 1e-11;               // of the cage's diagonal
 constexpr std::size_t kMostFaces = 500;       // around a vertex: work grows with its square
 
 /// Who meets whom in a cage.

@@ -13,7 +13,7 @@ namespace {
 
 using Box3 = Vec3<Interval>;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kDeepest = 48;       // parameters of sub-faces stay exact
+constexpr int kDeepest = 52;       // parameters of sub-faces stay exact
 constexpr int kAllSmooth = 11;     // by then semi-sharp creases are smooth
 constexpr int kLimitSteps = 400;   // the slowest neighbourhood shrinks by 0.66 a step
 

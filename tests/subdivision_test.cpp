@@ -207,6 +207,16 @@ TEST(Subdivision, IsNotChangedByVerticesThatNoFaceHas) {
         EXPECT_EQ(surface.patches[k].patch.enclose_points(box).x.hi, alone.patches[k].patch.enclose_points(box).x.hi);
 }
 
+// So that joints there are proved at the tolerance that `check` has by default, 1e-9 of the diagonal.
+TEST(Subdivision, BoxesAroundExtraordinaryVerticesAreFarSmallerThanDefaultTolerances) {
+    const auto surface = make_subdivision(test::prism_cage(), Scheme::catmull_clark);
+    const double corner = 0x1p-52;
+    for (const auto& m : surface.patches) {
+        const auto box = m.patch.enclose_points({{0, corner}, {0, corner}});
+        for (int axis = 0; axis < 3; ++axis) EXPECT_LT(box[axis].hi - box[axis].lo, 1e-10) << m.name;
+    }
+}
+
 void expect_refused(const Cage& cage, Scheme scheme, ErrorKind kind, const std::string& part) {
     try {
         make_subdivision(cage, scheme, 5000);
