@@ -93,6 +93,24 @@ TEST(Subdivision, NormalsAtExtraordinaryVerticesAreLimits) {
     EXPECT_LT(before, 1e-3);
 }
 
+// At high valences sub-faces turn for hundreds of levels; by symmetry the normal is known here.
+TEST(Subdivision, NormalsOfHighValenceAreThoseOfSymmetry) {
+    for (const int n : {5, 40, 300})
+        for (const bool triangles : {false, true}) {
+            Cage cage = test::fan_cage(n, triangles);
+            for (Point& p : cage.positions) p.z = 1 / (1 + p.x * p.x + p.y * p.y);
+            cage.positions[0] = {0, 0, 1};
+            const Scheme scheme = triangles ? Scheme::loop : Scheme::catmull_clark;
+            const auto patches = by_name(make_subdivision(cage, scheme).patches);
+            const auto& f = cage.faces[0];
+            const auto k = std::find(f.begin(), f.end(), 0) - f.begin();
+            ASSERT_LT(k, 3);
+            const auto x = evaluate(patches.at("#0"), k == 1 || (k == 2 && !triangles), k == 2);
+            ASSERT_TRUE(x.normal) << n;
+            EXPECT_LT(length(*x.normal - Point{0, 0, 1}), 1e-12) << n;
+        }
+}
+
 Tessellation mesh_of(const Composite& surface, double relative, Measure measure = Measure::parametric) {
     TessellationOptions options;
     options.tolerance = relative * bounding_box(surface).diagonal();
