@@ -16,7 +16,7 @@ namespace isoparm {
 namespace {
 
 constexpr double kCore = 1e-11;               // of the cage's diagonal
-constexpr std::size_t kMostFaces = 500;       // around a vertex: work grows with its square
+constexpr std::size_t kMostFaces = 500;       // around a vertex, and vertices of a face: work grows with its square
 
 /// Who meets whom in a cage.
 class Neighbours {
@@ -24,6 +24,8 @@ public:
     explicit Neighbours(const Cage& cage) : cage_(cage), faces_(cage.positions.size()), sharpness_(cage.positions.size(), 0) {
         for (int f = 0; f < static_cast<int>(cage.faces.size()); ++f) {
             const auto& c = cage.faces[f];
+            if (c.size() > kMostFaces)
+                throw_input(face_name(cage, f) + ": found " + std::to_string(c.size()) + " vertices, expected at most " + std::to_string(kMostFaces) + "; split the face");
             for (std::size_t k = 0; k < c.size(); ++k) {
                 faces_[c[k]].push_back(f);
                 const int a = c[k], b = c[(k + 1) % c.size()];
