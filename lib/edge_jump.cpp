@@ -15,6 +15,7 @@ using Models = Vec3<TaylorModel>;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kTip = 0x1p-12;       // pieces of an edge of which nothing is known are not made shorter
 constexpr double kShortest = 0x1p-44;  // nor any other
+constexpr int kFew = 8;                // halvings before a bound is taken for as good as it gets
 const Interval kUnknown{0, kInfinite};
 
 Models part(const EdgeSide::Jet& x, int n) { return {x.x.c[n], x.y.c[n], x.z.c[n]}; }
@@ -155,7 +156,7 @@ private:
             if (settled_[m]) continue;
             find_worst(m);
             const JumpBound& b = bounds_[m];
-            const bool enough = b.inside <= 0.01 * limits_.tolerance[m] || (b.inside < kInfinite && b.inside - b.lower <= limits_.relative * b.inside) || (b.inside <= limits_.tolerance[m] && halved_[m] > 64);
+            const bool enough = b.inside <= 0.01 * limits_.tolerance[m] || (b.inside < kInfinite && b.inside - b.lower <= limits_.relative * b.inside) || (b.inside <= limits_.tolerance[m] && halved_[m] >= kFew);
             const double shortest = b.inside < kInfinite ? kShortest : kTip;
             if (!enough && pieces_[worst_[m]].half > shortest / 2 && halved_[m] < limits_.max_halvings && !stalled(m)) return m;
             settled_[m] = true, wanted_[m] = false;
@@ -163,15 +164,19 @@ private:
         return kMeasures;
     }
 
-    /// Going on as since the last doubling of the pieces, would the budget end before anything is decided?
+    /// Going on as in the last two doublings of the pieces, would the budget end before anything is decided? Or is what is left near the tolerance rounding,
+    /// which does not fall at all? Two of them, as a maximum falls in stairs: all the pieces that are as bad must be halved first.
     bool stalled(int m) {
-        if (halved_[m] < 128 || (halved_[m] & (halved_[m] - 1)) != 0) return false;
+        if (halved_[m] == 0) started_[m] = static_cast<int>(pieces_.size());
+        if (halved_[m] < std::max(kFew / 2, started_[m]) || (halved_[m] & (halved_[m] - 1)) != 0) return false;
         const JumpBound& b = bounds_[m];
         const bool disproved = b.lower > limits_.tolerance[m];
         const double excess = disproved ? b.inside - b.lower : b.inside, goal = disproved ? limits_.relative * b.inside : limits_.tolerance[m];
         const double rate = excess / before_[m], at_end = excess * std::pow(rate, std::log2(double(limits_.max_halvings) / halved_[m]));
         before_[m] = excess;
-        return !(rate < 0.67) || at_end > 2 * goal;
+        const bool rounding = !disproved && rate > 0.95 && b.inside <= 1e3 * limits_.tolerance[m], slow = halved_[m] >= 128 && (!(rate < 0.67) || at_end > 2 * goal);
+        stalls_[m] = rounding || slow ? stalls_[m] + 1 : 0;
+        return stalls_[m] == 2;
     }
 
     const std::vector<EdgeSegment>& segments_;
@@ -179,7 +184,7 @@ private:
     std::vector<Piece> pieces_;
     std::array<JumpBound, kMeasures> bounds_;
     std::array<std::size_t, kMeasures> worst_{};
-    std::array<int, kMeasures> halved_{};
+    std::array<int, kMeasures> halved_{}, started_{}, stalls_{};
     std::array<double, kMeasures> before_{kInfinite, kInfinite, kInfinite, kInfinite, kInfinite};
     std::array<bool, kMeasures> wanted_{}, settled_{};
 };

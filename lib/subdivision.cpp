@@ -15,8 +15,8 @@
 namespace isoparm {
 namespace {
 
-constexpr double kCore = 1e-9;                // of the cage's diagonal
-constexpr std::size_t kMostFaces = 500;       // around a vertex: work grows with its square
+constexpr double kCore = 1e-11;               // of the cage's diagonal
+constexpr std::size_t kMostFaces = 500;       // around a vertex, and vertices of a face: work grows with its square
 
 /// Who meets whom in a cage.
 class Neighbours {
@@ -24,6 +24,8 @@ public:
     explicit Neighbours(const Cage& cage) : cage_(cage), faces_(cage.positions.size()), sharpness_(cage.positions.size(), 0) {
         for (int f = 0; f < static_cast<int>(cage.faces.size()); ++f) {
             const auto& c = cage.faces[f];
+            if (c.size() > kMostFaces)
+                throw_input(face_name(cage, f) + ": found " + std::to_string(c.size()) + " vertices, expected at most " + std::to_string(kMostFaces) + "; split the face");
             for (std::size_t k = 0; k < c.size(); ++k) {
                 faces_[c[k]].push_back(f);
                 const int a = c[k], b = c[(k + 1) % c.size()];
@@ -130,10 +132,14 @@ private:
     std::map<std::pair<int, int>, Edge> edges_;
 };
 
+/// Of the vertices that faces have: others are no part of the surface, and may be far away.
 double diagonal(const Cage& cage) {
-    Point low = cage.positions[0], high = low;
-    for (const Point& p : cage.positions)
-        for (int axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], p[axis]), high[axis] = std::max(high[axis], p[axis]);
+    Point low = cage.positions[cage.faces[0][0]], high = low;
+    for (const auto& f : cage.faces)
+        for (const int v : f) {
+            const Point& p = cage.positions[v];
+            for (int axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], p[axis]), high[axis] = std::max(high[axis], p[axis]);
+        }
     return distance(low, high);
 }
 

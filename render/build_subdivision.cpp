@@ -1,5 +1,6 @@
 // build_subdivision.cpp -- limit surfaces of subdivision cages, from an OBJ file or given in the scene.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -12,6 +13,8 @@ namespace isoparm {
 namespace {
 
 constexpr double kInfinitelySharp = 10;
+constexpr double kLargest = 1e100;  // as in files: squares and products of lengths stay finite
+constexpr std::size_t kMostCorners = 500;  // of a face, as make_subdivision() has it
 
 Cage read_cage(const Json& j, const SceneValues& values) {
     const std::string& name = values.text(j, "the name of an .obj file, relative to the scene, or a cage");
@@ -33,13 +36,16 @@ double sharpness(const std::vector<Json>& list, std::size_t at, const SceneValue
 
 Cage inline_cage(const Json& j, const SceneValues& values) {
     Cage cage;
-    cage.positions = values.points(j.at("vertices", "the vertices [x, y, z] of the cage"), 3);
+    for (const Json& v : values.list(j.at("vertices", "the vertices [x, y, z] of the cage"), 3, 0, "points [x, y, z]")) {
+        const Point p = cage.positions.emplace_back(values.point(v));
+        if (std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > kLargest) v.fail("found a vertex with a coordinate above 1e100 in size, expected at most that");
+    }
     const int last = static_cast<int>(cage.positions.size()) - 1;
     const auto vertex = [&](const Json& v) { return values.integer(v, 0, last, "a vertex"); };
     std::set<std::pair<int, int>> edges;
     for (const Json& f : values.list(j.at("faces", "the faces of the cage, lists of vertices counted from 0"), 1, 0, "faces")) {
         std::vector<int> corners;
-        for (const Json& v : values.list(f, 3, 0, "vertices")) {
+        for (const Json& v : values.list(f, 3, kMostCorners, "vertices")) {
             if (const int i = vertex(v); std::find(corners.begin(), corners.end(), i) == corners.end()) corners.push_back(i);
             else v.fail("found the vertex " + std::to_string(i) + " a second time in a face, expected vertices that are all different");
         }

@@ -93,6 +93,22 @@ TEST(Subdivision, NormalsAtExtraordinaryVerticesAreLimits) {
     EXPECT_LT(before, 1e-3);
 }
 
+// Sub-faces there turn for many hundreds of levels.
+TEST(Subdivision, NormalsOfHighValenceAreThoseOfOpenSubdivsMasks) {
+    for (const bool triangles : {false, true}) {
+        double turned = 0;
+        int corners = 0;
+        compare(test::fan_cage(60, triangles), triangles ? Scheme::loop : Scheme::catmull_clark, 1, [&](const Patch& patch, const LimitSample& s) {
+            const auto x = evaluate(patch, s.u, s.v);
+            if (!s.exact || x.du || std::fabs(s.p.x) + std::fabs(s.p.y) > 0.2) return;
+            ASSERT_TRUE(x.normal);
+            turned = std::max(turned, length(*x.normal - s.normal)), ++corners;
+        });
+        EXPECT_GE(corners, 60);
+        EXPECT_LT(turned, 1e-12) << triangles;
+    }
+}
+
 Tessellation mesh_of(const Composite& surface, double relative, Measure measure = Measure::parametric) {
     TessellationOptions options;
     options.tolerance = relative * bounding_box(surface).diagonal();
@@ -196,6 +212,27 @@ TEST(Subdivision, IsTheSameForEveryNumberOfThreads) {
     }
 }
 
+TEST(Subdivision, IsNotChangedByVerticesThatNoFaceHas) {
+    Cage cage = test::prism_cage();
+    const auto alone = make_subdivision(cage, Scheme::catmull_clark);
+    cage.positions.push_back({1e6, 1e6, 1e6});
+    const auto surface = make_subdivision(cage, Scheme::catmull_clark);
+    ASSERT_EQ(surface.patches.size(), alone.patches.size());
+    const Box box{{0, 1e-5}, {0, 1e-5}};
+    for (std::size_t k = 0; k < alone.patches.size(); ++k)
+        EXPECT_EQ(surface.patches[k].patch.enclose_points(box).x.hi, alone.patches[k].patch.enclose_points(box).x.hi);
+}
+
+// So that joints there are proved at the tolerance that `check` has by default, 1e-9 of the diagonal.
+TEST(Subdivision, BoxesAroundExtraordinaryVerticesAreFarSmallerThanDefaultTolerances) {
+    const auto surface = make_subdivision(test::prism_cage(), Scheme::catmull_clark);
+    const double corner = 0x1p-52;
+    for (const auto& m : surface.patches) {
+        const auto box = m.patch.enclose_points({{0, corner}, {0, corner}});
+        for (int axis = 0; axis < 3; ++axis) EXPECT_LT(box[axis].hi - box[axis].lo, 1e-10) << m.name;
+    }
+}
+
 void expect_refused(const Cage& cage, Scheme scheme, ErrorKind kind, const std::string& part) {
     try {
         make_subdivision(cage, scheme, 5000);
@@ -219,6 +256,10 @@ TEST(Subdivision, RefusesWhatHasNoSurface) {
     expect_refused(test::cube_cage(), Scheme::loop, ErrorKind::input, "triangles only");
     expect_refused(test::creased(test::cube_cage(), {{0, 7, 1}}), Scheme::catmull_clark, ErrorKind::input, "ends of an edge");
     expect_refused(test::fan_cage(600), Scheme::catmull_clark, ErrorKind::input, "600 faces around it");
+    Cage plate;
+    plate.faces.emplace_back();
+    for (int k = 0; k < 501; ++k) plate.positions.emplace_back(std::cos(0.0125 * k), std::sin(0.0125 * k), 0), plate.faces[0].push_back(k);
+    expect_refused(plate, Scheme::catmull_clark, ErrorKind::input, "face 0: found 501 vertices, expected at most 500");
     Cage bare = test::l_cage();
     bare.boundary = Cage::Boundary::none;
     expect_refused(bare, Scheme::catmull_clark, ErrorKind::input, "no limit surface");
