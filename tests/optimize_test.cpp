@@ -103,9 +103,10 @@ INSTANTIATE_TEST_SUITE_P(SomeTypes, Optimal, testing::ValuesIn(some_types()), na
 
 TEST(OptimalMesh, IsNearerTheOptimum) {
     const Composite one{{"octant", octant()}};
-    EXPECT_LT(ratio(meshed(one, 1e-3, Quality::optimal)), 0.9 * ratio(meshed(one, 1e-3, Quality::fast)));
-    EXPECT_LT(ratio(meshed(one, 1e-3, Quality::optimal)), 1.9);
-    EXPECT_LT(ratio(meshed(waves(), 3e-3, Quality::optimal)), 0.9 * ratio(meshed(waves(), 3e-3, Quality::fast)));
+    const double optimal = ratio(meshed(one, 2e-3, Quality::optimal));
+    EXPECT_LT(optimal, 0.9 * ratio(meshed(one, 2e-3, Quality::fast)));
+    EXPECT_LT(optimal, 2.2);
+    EXPECT_LT(ratio(meshed(waves(), 6e-3, Quality::optimal)), 0.92 * ratio(meshed(waves(), 6e-3, Quality::fast)));
 }
 
 TEST(OptimalMesh, OfASphereIsClosed) {
