@@ -25,11 +25,12 @@ FinerMesh::FinerMesh(const Composite& surface, double error, std::size_t max_tri
     options.progress = progress;
     Tessellation t = tessellate(surface, options);
     error_ = t.certified_error;
-    mesh_.points = std::move(t.mesh.positions);
+    mesh_ = triangles_of(t.mesh);
     parts_ = std::move(t.mesh.parts);
+    std::size_t triangles = 0;
     for (const MeshPart& part : parts_) {
-        first_.push_back(mesh_.triangles.size());
-        for (const auto& k : part.triangles) mesh_.triangles.push_back({part.vertex[k[0]], part.vertex[k[1]], part.vertex[k[2]]});
+        first_.push_back(triangles);
+        triangles += part.triangles.size();
     }
     tree_ = std::make_unique<const TriangleTree>(mesh_);
     middles_.resize(mesh_.triangles.size());

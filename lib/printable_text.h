@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace isoparm {
 
@@ -43,6 +44,13 @@ inline std::string printable(const std::string& text) {
     std::string r;
     for_each_character(text, [&](const std::string& bytes, int control) { r += control < 0 ? bytes : "\\x" + hex_of(control); });
     return r;
+}
+
+/// The beginning of a word that was found in a file, in quotation marks: ASCII, whatever the file holds.
+inline std::string in_quotes(std::string_view text) {
+    std::string r = "'";
+    for (const char c : text.substr(0, 40)) r += c >= 32 && c < 127 ? c : '?';
+    return r + (text.size() > 40 ? "...'" : "'");
 }
 
 }  // namespace isoparm

@@ -28,4 +28,11 @@ std::size_t weld_equal_points(TriangleMesh& mesh) {
     return dropped;
 }
 
+TriangleMesh triangles_of(const Mesh& mesh) {
+    TriangleMesh result{mesh.positions, {}};
+    for (const MeshPart& part : mesh.parts)
+        for (const auto& t : part.triangles) result.triangles.push_back({part.vertex[t[0]], part.vertex[t[1]], part.vertex[t[2]]});
+    return result;
+}
+
 }  // namespace isoparm

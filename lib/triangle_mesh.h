@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "scalar/vec.h"
+#include "mesh.h"
 
 namespace isoparm {
 
@@ -17,5 +17,8 @@ struct TriangleMesh {
 
 /// Makes points with exactly equal coordinates (0 and -0 are equal) one, the first of them; points keep their order. Returns how many were dropped.
 std::size_t weld_equal_points(TriangleMesh& mesh);
+
+/// The triangles of all parts; the points are the mesh's.
+TriangleMesh triangles_of(const Mesh& mesh);
 
 }  // namespace isoparm

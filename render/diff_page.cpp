@@ -1,9 +1,6 @@
-#include <stdlib.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -12,6 +9,7 @@
 #include "error.h"
 #include "html_text.h"
 #include "printable_text.h"
+#include "scratch_folder.h"
 
 namespace isoparm {
 namespace {
@@ -79,18 +77,10 @@ std::string brief(double x) {
 
 /// The file that write_image makes, as a data: address.
 std::string png_address(const Image& image) {
-    namespace fs = std::filesystem;
-    std::string folder = (fs::temp_directory_path() / "isoparm-diff-XXXXXX").string();
-    if (!::mkdtemp(folder.data())) throw Error(ErrorKind::io, folder + ": cannot make a temporary folder");
-    struct Removed {
-        std::string path;
-        ~Removed() {
-            std::error_code ignored;
-            fs::remove_all(path, ignored);
-        }
-    } const removed{folder};
-    write_image(folder + "/a.png", image, {});
-    std::ifstream in(folder + "/a.png", std::ios::binary);
+    const ScratchFolder folder;
+    const std::string file = folder / "a.png";
+    write_image(file, image, {});
+    std::ifstream in(file, std::ios::binary);
     std::ostringstream bytes;
     bytes << in.rdbuf();
     return "data:image/png;base64," + base64(bytes.str());

@@ -110,13 +110,6 @@ struct Collector {
     }
 };
 
-TriangleMesh triangles_of(const Mesh& mesh) {
-    TriangleMesh result{mesh.positions, {}};
-    for (const MeshPart& part : mesh.parts)
-        for (const auto& t : part.triangles) result.triangles.push_back({part.vertex[t[0]], part.vertex[t[1]], part.vertex[t[2]]});
-    return result;
-}
-
 /// The largest deflection tolerance, tolerance / 2^(1/4), ... whose mesh is proved to be within the tolerance. Around poles its triangles do
 /// not follow the parameters, so it is measured as any mesh is (verify.h).
 StudyMesh make_peer(const StudyInput& input) {

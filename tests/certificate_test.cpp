@@ -6,15 +6,13 @@
 #include "certificate.h"
 #include "samples.h"
 #include "shapes.h"
-#include "tessellate.h"
+#include "tessellation_options.h"
 
 namespace isoparm::tests {
 namespace {
 
 Certificate certificate_of(const Composite& surface, double relative, Measure measure) {
-    TessellationOptions options;
-    options.tolerance = relative * bounding_box(surface).diagonal();
-    options.measure = measure;
+    TessellationOptions options = options_of(surface, relative, measure);
     options.bounds = true, options.study = false;
     return make_certificate(surface, tessellate(surface, options), measure == Measure::geometric);
 }

@@ -9,16 +9,12 @@
 #include "error.h"
 #include "samples.h"
 #include "shapes.h"
+#include "tessellation_options.h"
 
 namespace isoparm::tests {
 namespace {
 
-TessellationOptions at(const Composite& surface, double relative, Measure measure = Measure::geometric) {
-    TessellationOptions options;
-    options.tolerance = relative * bounding_box(surface).diagonal();
-    options.measure = measure;
-    return options;
-}
+TessellationOptions at(const Composite& surface, double relative, Measure measure = Measure::geometric) { return options_of(surface, relative, measure); }
 
 TEST(FreeVertices, HalveTheTrianglesOfASphereAndStayWithinTheTolerance) {
     const Composite surface{{"S", octant()}};

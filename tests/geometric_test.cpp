@@ -12,16 +12,13 @@
 #include "patches/transformed.h"
 #include "refine.h"
 #include "samples.h"
-#include "tessellate.h"
+#include "tessellation_options.h"
 
 namespace isoparm::tests {
 namespace {
 
 Tessellation mesh_of(const Composite& surface, double relative, Measure measure) {
-    TessellationOptions options;
-    options.tolerance = relative * bounding_box(surface).diagonal();
-    options.measure = measure;
-    return tessellate(surface, options);
+    return tessellate(surface, options_of(surface, relative, measure));
 }
 
 /// From a point to the nearest triangle of a mesh; triangles are passed over by the spheres around them.

@@ -7,16 +7,14 @@
 #include "error.h"
 #include "patches/tensor_bezier.h"
 #include "samples.h"
-#include "tessellate.h"
+#include "tessellation_options.h"
 
 namespace isoparm::tests {
 namespace {
 
 Tessellation mesh_of(const Patch& patch, double relative, double degrees) {
     const Composite surface{{"S", patch}};
-    TessellationOptions options;
-    options.tolerance = relative * bounding_box(surface).diagonal();
-    options.measure = Measure::geometric;
+    TessellationOptions options = options_of(surface, relative, Measure::geometric);
     options.normal_deviation = degrees;
     return tessellate(surface, options);
 }

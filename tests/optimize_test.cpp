@@ -11,15 +11,13 @@
 #include "quiet.h"
 #include "samples.h"
 #include "shapes.h"
-#include "tessellate.h"
+#include "tessellation_options.h"
 
 namespace isoparm::tests {
 namespace {
 
 Tessellation meshed(const Composite& surface, double relative, Quality quality, Measure measure = Measure::geometric) {
-    TessellationOptions options;
-    options.tolerance = relative * bounding_box(surface).diagonal();
-    options.measure = measure;
+    TessellationOptions options = options_of(surface, relative, measure);
     options.quality = quality;
     return tessellate(surface, options);
 }

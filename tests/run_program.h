@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "scratch_folder.h"
+
 namespace isoparm::test {
 
 inline std::string program() {
@@ -29,28 +31,14 @@ inline std::string source_folder() {
 #endif
 }
 
-/// A folder of its own, removed in the end.
-class TemporaryFolder {
+/// The program's, which counts what is in it.
+class TemporaryFolder : public ScratchFolder {
 public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "isoparm-test-XXXXXX").string();
-        if (!::mkdtemp(name.data())) std::abort();
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-    const std::string& path() const { return path_; }
     std::size_t files() const {
         std::size_t n = 0;
-        for ([[maybe_unused]] const auto& f : std::filesystem::directory_iterator(path_)) ++n;
+        for ([[maybe_unused]] const auto& f : std::filesystem::directory_iterator(path())) ++n;
         return n;
     }
-
-private:
-    std::string path_;
 };
 
 inline std::string read_all(const std::string& path) {

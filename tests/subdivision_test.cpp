@@ -14,7 +14,7 @@
 #include "cages.h"
 #include "error.h"
 #include "limit.h"
-#include "tessellate.h"
+#include "tessellation_options.h"
 #include "triangle_tree.h"
 
 namespace isoparm {
@@ -110,9 +110,7 @@ TEST(Subdivision, NormalsOfHighValenceAreThoseOfOpenSubdivsMasks) {
 }
 
 Tessellation mesh_of(const Composite& surface, double relative, Measure measure = Measure::parametric) {
-    TessellationOptions options;
-    options.tolerance = relative * bounding_box(surface).diagonal();
-    options.measure = measure;
+    TessellationOptions options = tests::options_of(surface, relative, measure);
     options.study = false;
     return tessellate(surface, options);
 }
@@ -149,10 +147,7 @@ TEST(Subdivision, CertifiedMeshesHoldAgainstTheLimitAndAreWatertight) {
             const bool open = c.name.find("fan") == 0 || c.name[0] == 'L' || c.name.find("triangles") == 0;
             EXPECT_EQ(t.topology.boundary_loops, open ? 1u : 0u) << c.name;
             EXPECT_LE(largest_gap(surface.patches, t.mesh), measure == Measure::parametric ? t.certified_error : 4 * t.certified_error) << c.name;
-            TriangleMesh flat;
-            flat.points = t.mesh.positions;
-            for (const auto& part : t.mesh.parts)
-                for (const auto& k : part.triangles) flat.triangles.push_back({part.vertex[k[0]], part.vertex[k[1]], part.vertex[k[2]]});
+            const TriangleMesh flat = triangles_of(t.mesh);
             const TriangleTree tree(flat);
             double worst = 0;
             for (const LimitSample& s : limit_samples(c.cage, c.scheme, 4))

@@ -1,6 +1,6 @@
 // What a certified mesh promises: soundness over random patches of every type, watertight joints, one result for every
 // number of threads, and budgets that end with a message. ISOPARM_SOUNDNESS=N sets the random patches of each type.
-#include "tessellate.h"
+#include "tessellation_options.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -23,10 +23,7 @@ namespace isoparm::tests {
 namespace {
 
 Tessellation tessellate_relative(const Composite& surface, double relative, Measure measure = Measure::parametric) {
-    TessellationOptions options;
-    options.measure = measure;
-    options.tolerance = relative * bounding_box(surface).diagonal();
-    return tessellate(surface, options);
+    return tessellate(surface, options_of(surface, relative, measure));
 }
 
 /// Largest |S - L| at random points of every triangle, minus what was certified: never positive.

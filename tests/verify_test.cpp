@@ -12,7 +12,7 @@
 #include "run_program.h"
 #include "samples.h"
 #include "scene.h"
-#include "tessellate.h"
+#include "tessellation_options.h"
 #include "triangle_tree.h"
 
 namespace isoparm::tests {
@@ -23,12 +23,6 @@ Composite sphere() { return surface_of("sphere", "sphere"); }
 /// The unit square in the plane z = 0.
 Composite square() { return {{"square", make_bezier_patch({{{0, 0, 0}, {0, 1, 0}}, {{1, 0, 0}, {1, 1, 0}}})}}; }
 
-TriangleMesh to_triangles(const Mesh& mesh) {
-    TriangleMesh t{mesh.positions, {}};
-    for (const auto& part : mesh.parts)
-        for (const auto& k : part.triangles) t.triangles.push_back({part.vertex[k[0]], part.vertex[k[1]], part.vertex[k[2]]});
-    return t;
-}
 /// n x n cells of the square, two triangles each.
 TriangleMesh grid(int n) {
     TriangleMesh m;
@@ -123,11 +117,8 @@ TEST_P(VerifyOwn, WhatIsCertifiedIsConfirmed) {
     for (const double relative : {3e-2, 1e-2}) {
         VerifyOptions options;
         options.gap = 0.2;
-        TessellationOptions how;
-        how.tolerance = relative * bounding_box(surface).diagonal();
-        how.measure = Measure::geometric;
-        const Tessellation t = tessellate(surface, how);
-        const TriangleMesh mesh = to_triangles(t.mesh);
+        const Tessellation t = tessellate(surface, options_of(surface, relative, Measure::geometric));
+        const TriangleMesh mesh = triangles_of(t.mesh);
         const Verification v = verify(mesh, surface, options);
         // The certificate, the interval and what random points tell must agree.
         EXPECT_LE(v.lower(), t.certified_error);
@@ -176,7 +167,7 @@ TEST(Verify, AMissingPatchIsAHoleAndFar) {
     TessellationOptions how;
     how.tolerance = 0.01;
     Composite seven(surface.begin(), surface.end() - 1);
-    const TriangleMesh mesh = to_triangles(tessellate(seven, how).mesh);
+    const TriangleMesh mesh = triangles_of(tessellate(seven, how).mesh);
     const Verification v = verify(mesh, surface, {});
     // The middle of an octant, (1,1,1)/sqrt 3, sees the quarter circles around it at 2 sin(35.26/2 degrees), and the mesh's chords a little nearer.
     const double away = 2 * std::sin(0.5 * std::asin(1 / std::sqrt(3.0)));
@@ -208,7 +199,7 @@ TEST(Verify, RandomTrianglesNeverLeaveTheirInterval) {
         }
         TessellationOptions how;
         how.tolerance = 1e-3 * size;
-        const TriangleTree fine(to_triangles(tessellate(surface, how).mesh));
+        const TriangleTree fine(triangles_of(tessellate(surface, how).mesh));
         for (int k = 0; k < 2000; ++k) {
             const auto [a, b, c] = mesh.corners(std::size_t(random.integer(0, 39)));
             double s = random.number(), r = random.number();
@@ -259,7 +250,7 @@ TEST(Verify, TheResultDoesNotDependOnThreads) {
     const Composite surface = surface_of("coons", "S");
     TessellationOptions how;
     how.tolerance = 2e-2;
-    const TriangleMesh mesh = to_triangles(tessellate(surface, how).mesh);
+    const TriangleMesh mesh = triangles_of(tessellate(surface, how).mesh);
     std::vector<Verification> all;
     for (const std::size_t threads : {1, 2, 7}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "error.h"
+#include "printable_text.h"
 
 namespace isoparm {
 namespace {
@@ -22,13 +23,6 @@ struct Token {
     std::string_view text;
     Place place;
 };
-
-/// What was found, short and printable whatever the file holds.
-std::string quoted(std::string_view text) {
-    std::string out = "'";
-    for (const char c : text.substr(0, 40)) out += c >= 32 && c < 127 ? c : '?';
-    return out + (text.size() > 40 ? "...'" : "'");
-}
 
 class Reader {
 public:
@@ -71,7 +65,7 @@ private:
         return tokens_[next_++];
     }
     void nothing_more(const char* after) {
-        if (more()) fail(tokens_[next_].place, quoted(tokens_[next_].text), std::string("nothing after ") + after);
+        if (more()) fail(tokens_[next_].place, in_quotes(tokens_[next_].text), std::string("nothing after ") + after);
     }
 
     double number(const char* expected) {
@@ -85,14 +79,14 @@ private:
         } else if (status == std::errc() && end == digits.data() + digits.size() && std::abs(x) <= max_coordinate) {
             return x;
         }
-        fail(t.place, quoted(t.text), std::string(expected) + ": a finite number of at most 1e100 in size");
+        fail(t.place, in_quotes(t.text), std::string(expected) + ": a finite number of at most 1e100 in size");
     }
 
     /// A part of a token, or all of it.
     int integer(std::string_view text, const Token& t, const char* expected) const {
         int x = 0;
         const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), x);
-        if (status != std::errc() || end != text.data() + text.size()) fail(t.place, quoted(t.text), expected);
+        if (status != std::errc() || end != text.data() + text.size()) fail(t.place, in_quotes(t.text), expected);
         return x;
     }
     int integer(const char* expected) {
@@ -109,7 +103,7 @@ private:
         else if (word == "f") face();
         else if (word == "t") tag();
         else if (!passed_over.contains(word))
-            fail(tokens_[0].place, quoted(word), "an OBJ statement of a polygon mesh: v, vt, vn, f, g, o, s, usemtl, mtllib, l, p; or a tag t");
+            fail(tokens_[0].place, in_quotes(word), "an OBJ statement of a polygon mesh: v, vt, vn, f, g, o, s, usemtl, mtllib, l, p; or a tag t");
     }
 
     void vertex() {
@@ -118,7 +112,7 @@ private:
         const std::size_t extra = tokens_.size() - next_;
         if (extra == 1) {
             const Token w = tokens_[next_];
-            if (number("the weight 1") != 1) fail(w.place, quoted(w.text), "the weight 1: rational cages have no subdivision surface");
+            if (number("the weight 1") != 1) fail(w.place, in_quotes(w.text), "the weight 1: rational cages have no subdivision surface");
         } else if (extra == 3) {
             for (int k = 0; k < 3; ++k) number("a colour");  // as some programs append
         }
@@ -149,7 +143,7 @@ private:
         int parts[3] = {};
         for (int part = 0;; ++part) {
             const std::size_t end = std::min(rest.find('/'), rest.size());
-            if (part > 2) fail(t.place, quoted(t.text), form);
+            if (part > 2) fail(t.place, in_quotes(t.text), form);
             if (end > 0 || part != 1 || end == rest.size()) parts[part] = integer(rest.substr(0, end), t, form);
             if (end == rest.size()) break;
             rest.remove_prefix(end + 1);
@@ -182,7 +176,7 @@ private:
         else if (name.text == "hole") holes(ints);
         else if (name.text == "interpolateboundary") boundary();
         else if (name.text.starts_with("facevarying")) return;  // textures only
-        else fail(name.place, "the tag " + quoted(name.text), "crease, corner, hole or interpolateboundary");
+        else fail(name.place, "the tag " + in_quotes(name.text), "crease, corner, hole or interpolateboundary");
         nothing_more("the values of the tag");
     }
 
@@ -190,12 +184,12 @@ private:
         static constexpr const char* form = "the numbers of integers, floats and strings, as in 2/1/0";
         const Token t = token(form);
         const std::size_t a = t.text.find('/'), b = a == t.text.npos ? a : t.text.find('/', a + 1);
-        if (b == t.text.npos) fail(t.place, quoted(t.text), form);
+        if (b == t.text.npos) fail(t.place, in_quotes(t.text), form);
         const int ints = integer(t.text.substr(0, a), t, form), floats = integer(t.text.substr(a + 1, b - a - 1), t, form);
         const int strings = integer(t.text.substr(b + 1), t, form);
         const auto values = static_cast<long long>(tokens_.size() - next_);
         if (ints < 0 || floats < 0 || strings < 0 || static_cast<long long>(ints) + floats + strings != values)
-            fail(t.place, quoted(t.text) + " before " + std::to_string(values) + " values", "numbers that add up to them");
+            fail(t.place, in_quotes(t.text) + " before " + std::to_string(values) + " values", "numbers that add up to them");
         return {ints, floats};
     }
 

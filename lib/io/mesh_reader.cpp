@@ -9,7 +9,7 @@ namespace isoparm {
 void require_mesh_name(const std::string& path) {
     const std::string extension = extension_of(path);
     if (extension != ".ply" && extension != ".obj" && extension != ".stl")
-        throw Error(ErrorKind::usage, path + ": found the extension " + printable(extension) + ", expected .ply, .obj or .stl");
+        throw Error(ErrorKind::usage, path + ": found the extension " + in_quotes(extension) + ", expected .ply, .obj or .stl");
 }
 
 MeshFile read_mesh(const std::string& bytes, const std::string& path) {

@@ -16,12 +16,6 @@ bool is_space(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f' |
 
 }  // namespace
 
-std::string printable(std::string_view text) {
-    std::string out = "'";
-    for (const char c : text.substr(0, 40)) out += c >= 32 && c < 127 ? c : '?';
-    return out + (text.size() > 40 ? "...'" : "'");
-}
-
 bool TextScanner::next_line() {
     at_ = text_.find('\n', at_);
     if (at_ == text_.npos) {
@@ -54,7 +48,7 @@ void TextScanner::fail(const std::string& found, const std::string& expected) co
 }
 void TextScanner::fail_word(std::string_view word, const char* expected) const {
     const bool end_of_text = word_line_ == line_ && at_ == text_.size();
-    fail(!word.empty() ? printable(word) : end_of_text ? "the end of the file" : "the end of the line", expected);
+    fail(!word.empty() ? in_quotes(word) : end_of_text ? "the end of the file" : "the end of the line", expected);
 }
 
 double TextScanner::number(std::string_view word, const char* expected) const {
@@ -67,7 +61,7 @@ double TextScanner::number(std::string_view word, const char* expected) const {
         if (status == std::errc::result_out_of_range && (digits.find("e-") != digits.npos || digits.find("E-") != digits.npos)) return 0;
     }
     if (word.empty()) fail_word(word, expected);
-    fail(printable(word), std::string(expected) + ": a finite number of at most 1e50 in size");
+    fail(in_quotes(word), std::string(expected) + ": a finite number of at most 1e50 in size");
 }
 
 long long TextScanner::integer(std::string_view word, const char* expected) const {

@@ -4,11 +4,9 @@
 #include <string_view>
 
 #include "io/mesh_reader.h"
+#include "printable_text.h"
 
 namespace isoparm {
-
-/// What was found, short and printable whatever the file holds.
-std::string printable(std::string_view text);
 
 class TextScanner {
 public:

@@ -92,9 +92,9 @@ private:
         e.name = word("the name of an element");
         const std::string_view w = word("a number of elements");
         const long long n = text_.integer(w, "a number of elements");
-        if (n < 0 || static_cast<unsigned long long>(n) > kMostElements) text_.fail(printable(w), "a number of elements from 0 to " + std::to_string(kMostElements));
+        if (n < 0 || static_cast<unsigned long long>(n) > kMostElements) text_.fail(in_quotes(w), "a number of elements from 0 to " + std::to_string(kMostElements));
         for (const Element& other : elements_)
-            if (other.name == e.name) text_.fail("a second element " + printable(e.name), "one of each name");
+            if (other.name == e.name) text_.fail("a second element " + in_quotes(e.name), "one of each name");
         e.count = static_cast<std::size_t>(n);
         elements_.push_back(std::move(e));
     }
@@ -122,7 +122,7 @@ private:
         for (const Property& p : e.properties) least += ascii_ ? 2 : kSize[static_cast<int>(p.list ? p.count : p.value)];
         const std::size_t left = ascii_ ? text_.left() + 1 : binary_.left();
         if (e.count > 0 && least > 0 && e.count > left / least)
-            throw_input(path_ + ": byte " + std::to_string(ascii_ ? text_.offset() : binary_.offset()) + ": found " + std::to_string(e.count) + " elements " + printable(e.name) + " announced and " +
+            throw_input(path_ + ": byte " + std::to_string(ascii_ ? text_.offset() : binary_.offset()) + ": found " + std::to_string(e.count) + " elements " + in_quotes(e.name) + " announced and " +
                         std::to_string(ascii_ ? text_.left() : left) + " bytes left, expected at least " + std::to_string(e.count * least) + " bytes");
     }
     double number(Scalar type, const char* expected) {

@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <iostream>
 
 #include <tbb/parallel_for.h>
 
+#include "bound_text.h"
 #include "commands/selection.h"
 #include "continuity.h"
 #include "json_text.h"
@@ -169,16 +168,7 @@ void print_json(std::ostream& out, const Report& r) {
 
 // ---- text
 
-/// Three digits, rounded up or down: a bound stays one.
-std::string brief(double x, bool up) {
-    if (!std::isfinite(x)) return "?";
-    char text[32];
-    for (double y = x;; y += (up ? 1e-3 : -1e-3) * std::fabs(x)) {
-        std::snprintf(text, sizeof text, "%.3g", y);
-        const double back = std::strtod(text, nullptr);
-        if (up ? back >= x : back <= x) return text;
-    }
-}
+std::string brief(double x, bool up) { return std::isfinite(x) ? bound_text(x, 3, up) : "?"; }
 
 /// "0.00123" where the bounds agree on it, else "< 1e-15".
 std::string cell(const JumpBound& b) {

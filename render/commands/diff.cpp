@@ -1,5 +1,3 @@
-#include <stdlib.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -18,6 +16,7 @@
 #include "image_header.h"
 #include "io/atomic_file.h"
 #include "printable_text.h"
+#include "scratch_folder.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -234,16 +233,8 @@ std::vector<ImageDiff> compare_folders(const std::string& references, const std:
 }
 
 int selftest(const Options& options) {
-    std::string folder = (fs::temp_directory_path() / "isoparm-selftest-XXXXXX").string();
-    if (!::mkdtemp(folder.data())) throw Error(ErrorKind::io, folder + ": cannot make a temporary folder");
-    struct Removed {
-        std::string path;
-        ~Removed() {
-            std::error_code ignored;
-            fs::remove_all(path, ignored);
-        }
-    } const removed{folder};
-    const auto trials = diff_selftest(folder);
+    const ScratchFolder folder;
+    const auto trials = diff_selftest(folder.path());
     std::size_t missed = 0;
     for (const DiffTrial& t : trials) {
         missed += !t.caught();

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
 
+#include "bound_text.h"
 #include "commands/selection.h"
 #include "commands/verify_certificate.h"
 #include "error.h"
@@ -143,16 +143,7 @@ void print_json(std::ostream& out, const Report& r) {
 
 // ---- text
 
-/// Six digits, rounded down or up: a bound stays one.
-std::string brief(double x, bool up) {
-    if (!std::isfinite(x)) return "unknown";
-    char text[32];
-    for (double y = x;; y += (up ? 1e-6 : -1e-6) * std::fabs(x)) {
-        std::snprintf(text, sizeof text, "%.6g", y);
-        const double back = std::strtod(text, nullptr);
-        if (up ? back >= x : back <= x) return text;
-    }
-}
+std::string brief(double x, bool up) { return bound_text(x, 6, up); }
 std::string brief(double x) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", x);
