@@ -1,5 +1,6 @@
 // camera.h -- perspective and orthographic cameras.
 #pragma once
+#include <limits>
 #include <vector>
 
 #include "scene.h"
@@ -9,6 +10,7 @@ namespace isoparm {
 /// points origin + t direction, t >= 0; direction has unit length.
 struct Ray {
     Point origin, direction;
+    double reach = std::numeric_limits<double>::infinity();  // of rays to a light: its distance, in lengths of the direction
 };
 
 /// Looks along `forward`; right, up and forward are orthonormal. Pixels: x to the right, y down, (0,0) is the corner of

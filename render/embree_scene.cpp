@@ -99,15 +99,14 @@ struct LayerQuery : Query {
     std::vector<Hit>* hits = nullptr;
 };
 struct ShadowQuery : Query {
+    EmbreeScene::Shadows shadows = EmbreeScene::Shadows::light;
     double transmittance = 1;
     std::vector<std::uint32_t> solids;
 };
 
-/// A sheet that lets light through throws a lighter shadow than its opacity asks for, as coloured glass does: sheets under sheets keep
-/// their colours. Opaque sheets throw a full one.
-double sheet_lets_through(const Geometry& geometry) {
+double sheet_lets_through(const Geometry& geometry, EmbreeScene::Shadows shadows) {
     const double o = geometry.opacity;
-    return 1 - o * o * o;
+    return shadows == EmbreeScene::Shadows::physical ? 1 - o : 1 - o * o * o;
 }
 
 // The two filters refuse every hit of geometry that lets light through, so that Embree goes on to the next; they are
@@ -135,7 +134,7 @@ void dim_light(const RTCFilterFunctionNArguments* a) {
         query.transmittance *= 1 - static_cast<double>(geometry.opacity);
         return;
     }
-    query.transmittance *= sheet_lets_through(geometry);
+    query.transmittance *= sheet_lets_through(geometry, query.shadows);
 }
 
 /// Normal numbers again, for proofs.
@@ -232,7 +231,7 @@ void shadow_of_leaf(const RTCOccludedFunctionNArguments* a) {
     const Meeting met(a->valid, a->ray, a->N, *geometry.patch, a->primID, *query.patches);
     for (int k = 0; k < met.count; ++k)
         for (int r = 0; r < met.roots[k].count; ++r) {
-            if (geometry.opacity < 1) *query.patches->transmittance *= sheet_lets_through(geometry);
+            if (geometry.opacity < 1) *query.patches->transmittance *= sheet_lets_through(geometry, static_cast<ShadowQuery&>(query).shadows);
             else RTCRayN_tfar(a->ray, a->N, static_cast<unsigned>(met.lane[k])) = -std::numeric_limits<float>::infinity();
         }
 }
@@ -295,7 +294,7 @@ struct EmbreeScene::State {
         r.org_x = static_cast<float>(o.x), r.org_y = static_cast<float>(o.y), r.org_z = static_cast<float>(o.z);
         r.dir_x = static_cast<float>(ray.direction.x), r.dir_y = static_cast<float>(ray.direction.y),
         r.dir_z = static_cast<float>(ray.direction.z);
-        r.tnear = 0, r.tfar = std::numeric_limits<float>::infinity(), r.time = 0;
+        r.tnear = 0, r.tfar = static_cast<float>(std::max(0.0, ray.reach - start)), r.time = 0;
         r.mask = ~0u, r.id = 0, r.flags = 0;
     }
     void fill(const Ray& ray, double start, RTCRay16& r, int i) const {
@@ -321,8 +320,9 @@ struct EmbreeScene::State {
         return !ga.solid && !gb.solid && ga.mesh == gb.mesh && b.distance - a.distance < 1e-6 * radius &&
                near_edge(a) && near_edge(b);
     }
-    double transmittance(const Ray& ray) const {
+    double transmittance(const Ray& ray, Shadows shadows) const {
         ShadowQuery query;
+        query.shadows = shadows;
         RTCRay r;
         const double start = entry(ray);
         fill(ray, start, r);
@@ -544,14 +544,14 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
     for (Hit& h : hits) h.distance += start;
 }
 
-void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, double* result) const {
+void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, double* result, Shadows shadows) const {
     const State& s = *state_;
     std::fill(result, result + n, 1.0);
     if (active == 0) return;
     const FlushSubnormals flush;
     if (s.translucent) {
         for (int i = 0; i < n; ++i)
-            if (active >> i & 1) result[i] = s.transmittance(rays[i]);
+            if (active >> i & 1) result[i] = s.transmittance(rays[i], shadows);
         return;
     }
     alignas(64) RTCRay16 r;

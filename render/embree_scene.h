@@ -59,15 +59,17 @@ public:
     };
     Count count() const;
 
-    /// The nearest hit of each of n <= packet rays, whatever its opacity.
+    /// The nearest hit of each of n <= packet rays. Not of a scene that is translucent().
     void intersect(const Ray* rays, int n, Hit* hits) const;
     /// The nearest hit of one ray, whatever its opacity.
     Hit first(const Ray& ray) const;
     /// Every hit from the nearest to the first opaque one, in order. A tube or ball that lets light through counts
     /// once.
     void layers(const Ray& ray, std::vector<Hit>& hits) const;
+    /// How dark the shadow of a sheet is: as its opacity asks for, or, as in figures, lighter, so that sheets under sheets keep their colours.
+    enum class Shadows { light, physical };
     /// The part of light that passes along each of n <= packet rays; 1 where `active` has no bit.
-    void transmittance(const Ray* rays, int n, std::uint32_t active, double* result) const;
+    void transmittance(const Ray* rays, int n, std::uint32_t active, double* result, Shadows shadows = Shadows::light) const;
 
 private:
     struct State;

@@ -12,6 +12,7 @@
 #include "overlay.h"
 #include "paint.h"
 #include "panels.h"
+#include "path_lighting.h"
 #include "sampler.h"
 #include "shade.h"
 #include "surfel.h"
@@ -61,8 +62,8 @@ struct Samples {
 
 class Tracer {
 public:
-    Tracer(const TracedScene& scene, const Camera& camera, int samples, const std::optional<Color>& background)
-        : scene_(scene), camera_(camera), lighting_(camera), samples_(samples), background_(background) {}
+    Tracer(const TracedScene& scene, const Camera& camera, const Lighting& lighting, int samples, const std::optional<Color>& background)
+        : scene_(scene), camera_(camera), lighting_(lighting), samples_(samples), background_(background) {}
 
     /// The mean of the samples, and the variance of each.
     Samples pixel(int x, int y) const {
@@ -120,10 +121,10 @@ private:
             surfels_at(scene_, camera_, by, hits, count, surfels);
             for (int k = 0; k < count; ++k) {
                 surfels[k].sample = first + met[begin + k].ray;
-                surfels[k].dimension = 1 + 2 * met[begin + k].layer;
+                surfels[k].dimension = 1 + lighting_.dimensions() * met[begin + k].layer;
             }
             Color light[EmbreeScene::packet];
-            lighting_.shade(*scene_.embree, sampler, surfels, count, light);
+            lighting_.shade(scene_, sampler, surfels, count, light);
             for (int k = 0; k < count; ++k) add(surfels[k], light[k], seen[met[begin + k].ray]);
         }
         for (int i = 0; i < n; ++i) {
@@ -141,7 +142,7 @@ private:
 
     const TracedScene& scene_;
     const Camera& camera_;
-    Lighting lighting_;
+    const Lighting& lighting_;
     PixelFilter filter_;
     int samples_;
     std::optional<Color> background_;
@@ -210,6 +211,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+std::unique_ptr<const Lighting> lighting_of(const Scene& scene, const Camera& camera) {
+    if (scene.lighting) return std::make_unique<PathLighting>(*scene.lighting, camera);
+    return std::make_unique<FigureLighting>(camera);
+}
+
 /// All pixels as where nothing is.
 Layers blank_layers(int width, int height, const std::vector<Aov>& aovs) {
     Layers layers{channels_of(aovs), {}};
@@ -257,7 +263,8 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     start = std::chrono::steady_clock::now();
     picture.image = blank(area.width(), area.height(), {});
     picture.layers = blank_layers(area.width(), area.height(), how.aovs);
-    trace(Tracer(traced, camera, how.samples, scene.image.background), AovReader(scene, traced, camera, how.aovs), area,
+    const std::unique_ptr<const Lighting> lighting = lighting_of(scene, camera);
+    trace(Tracer(traced, camera, *lighting, how.samples, scene.image.background), AovReader(scene, traced, camera, how.aovs), area,
           part_of_progress(kMeshShare, 1 - kMeshShare), picture);
     picture.rays = traced.embree->count();
     paint(overlay(scene, view.objects, traced, camera, how.pixel, view.letter), area.x0, area.y0, picture.image);

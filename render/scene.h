@@ -9,6 +9,7 @@
 
 #include "composite.h"
 #include "curve.h"
+#include "light.h"
 #include "math_text.h"
 
 namespace isoparm {
@@ -79,6 +80,7 @@ struct SceneObject {
     std::optional<Color> color;    // default by kind
     std::optional<Color> back;     // Kind::surface: of its other side; default a grey that goes with `color`
     double opacity = 1;
+    Material material;             // of traced light
     std::optional<double> radius;  // of tubes, rods and balls, scene units; default a fraction of the scene's size
     Isolines isolines;
     bool boundary = false;         // draw the patches' boundary curves as tubes
@@ -125,6 +127,7 @@ struct Scene {
     int panel_rows = 1, panel_columns = 1;
     CameraSettings camera;
     ImageSettings image;
+    std::optional<LightingSettings> lighting;  // none: the figures' own
     Tolerance tolerance;
     std::vector<std::string> notes;  // what was done to definitions, each with its place
 

@@ -6,6 +6,7 @@
 #include "json.h"
 #include "scene.h"
 #include "scene_builder.h"
+#include "scene_light.h"
 #include "scene_objects.h"
 #include "scene_values.h"
 #include "suggest.h"
@@ -197,7 +198,7 @@ Surface finished(const std::string& name, const std::string& type, BuiltSurface 
 }
 
 Scene read_scene(const Json& root, const std::map<std::string, double>& overrides) {
-    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "panels", "layout", "camera", "image", "tessellation"});
+    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "panels", "layout", "camera", "image", "lighting", "tessellation"});
     check_version(root);
     SceneValues values;
     Scene scene;
@@ -235,6 +236,7 @@ Scene read_scene(const Json& root, const std::map<std::string, double>& override
     scene.image.background = Color{1, 1, 1};
     if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera, values);
     if (const auto image = root.find("image")) scene.image = read_image(*image, values);
+    if (const auto lighting = root.find("lighting")) scene.lighting = read_lighting(*lighting, values);
     if (const auto tessellation = root.find("tessellation")) scene.tolerance = read_tolerance(*tessellation, values);
     return scene;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene_light.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -181,7 +182,7 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
 
     SceneObject o;
     if (surface) {
-        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "radius", "label", "line", "dash", "hidden"});
+        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "material", "radius", "label", "line", "dash", "hidden"});
         o.kind = SceneObject::Kind::surface;
         o.name = values.text(*surface, "the name of a surface");
         builder.surface(*surface);
@@ -189,18 +190,18 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
         if (const auto lines = j.find("isolines")) o.isolines = read_isolines(*lines, values);
         if (const auto boundary = j.find("boundary")) o.boundary = values.boolean(*boundary);
     } else if (curve) {
-        j.allow_keys({"curve", "color", "opacity", "radius", "label", "line", "dash", "hidden"});
+        j.allow_keys({"curve", "color", "opacity", "material", "radius", "label", "line", "dash", "hidden"});
         o.kind = SceneObject::Kind::curve;
         o.name = values.text(*curve, "the name of a curve");
         builder.curve(*curve);
     } else if (net) {
-        j.allow_keys({"net", "color", "opacity", "radius", "label", "labels", "line", "dash", "hidden"});
+        j.allow_keys({"net", "color", "opacity", "material", "radius", "label", "labels", "line", "dash", "hidden"});
         o.kind = SceneObject::Kind::net;
         o.net = net_named(*net, builder);
         o.name = net->string();
         if (const auto labels = j.find("labels")) o.net_labels = read_net_labels(*labels, values, o.net);
     } else if (point) {
-        j.allow_keys({"point", "color", "opacity", "radius", "label", "dot", "hidden"});
+        j.allow_keys({"point", "color", "opacity", "material", "radius", "label", "dot", "hidden"});
         o.kind = SceneObject::Kind::point;
         o.point = values.point(*point);
     } else {
@@ -221,6 +222,7 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
     if (const auto label = j.find("label")) read_label(*label, builder, surface ? *surface : curve ? *curve : *label, o);
     if (const auto color = j.find("color")) o.color = values.color(*color);
     if (const auto opacity = j.find("opacity")) o.opacity = values.in_range(*opacity, 0, 1, "an opacity from 0 to 1");
+    if (const auto material = j.find("material")) o.material = read_material(*material, values);
     return o;
 }
 

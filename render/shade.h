@@ -1,36 +1,51 @@
-// shade.h -- how a point of a surface looks: soft plastic under a key light, a fill and a sky that come with the
-// camera, so that every figure is lit like the next one. Nothing is ever brighter than white: highlights blend toward
-// it.
+// shade.h -- how a point of a surface looks. Figures: soft plastic under a studio's light, where nothing is ever brighter than
+// white: highlights blend toward it. Traced light: path_lighting.h.
 #pragma once
 #include "embree_scene.h"
+#include "local_frame.h"
+#include "light.h"
 #include "sampler.h"
+#include "studio.h"
 
 namespace isoparm {
 
 /// What a ray sees of a surface, ready to be lit.
 struct Surfel {
-    Point origin;  // where its shadow rays begin: clear of the mesh
+    Point origin;   // where rays begin that leave it on the viewer's side: clear of the mesh
+    Point beneath;  // likewise, on the other side
     Point normal;  // unit, toward the viewer
     Point position, shading, geometric;  // where it is; normals of surface and mesh, unit, on the viewer's side
     Vec2 at;                             // parameters, on patches
     Point view;    // unit, toward the viewer
     Color color;   // linear reflectance
     double opacity = 1;
+    bool front = true;  // the viewer sees the outward side
+    const Material* material = nullptr;
     Color ink;  // of the lines drawn on it, unlit
     double ink_cover = 0;
-    int sample = 0, dimension = 0;  // of the sampler: dimension for the light, dimension + 1 for the sky
+    int sample = 0, dimension = 0;  // of the sampler: the first that is its own
 };
+
+struct TracedScene;
 
 class Lighting {
 public:
-    explicit Lighting(const Camera& camera);
+    virtual ~Lighting() = default;
+    /// How many dimensions of the sampler a surfel uses.
+    virtual int dimensions() const = 0;
     /// Light leaving n <= EmbreeScene::packet surfels of one pixel toward the viewer, linear, without the ink.
-    void shade(const EmbreeScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const;
+    virtual void shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const = 0;
+};
+
+class FigureLighting : public Lighting {
+public:
+    explicit FigureLighting(const Camera& camera) : studio_(camera), key_(studio_.key) {}
+    int dimensions() const override { return 2; }
+    void shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const override;
 
 private:
-    /// The sky's light from a direction.
-    Color sky(const Point& direction) const;
-    Point up_, key_, key_x_, key_y_, fill_;
+    Studio studio_;
+    LocalFrame key_;
 };
 
 }  // namespace isoparm

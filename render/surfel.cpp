@@ -87,12 +87,15 @@ Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, co
     Surfel s;
     s.view = -ray.direction;
     s.opacity = thing.opacity;
+    s.material = &thing.material;
     if (!thing.patch) {
         const Point n = normalized(hit.normal);
-        s.shading = s.geometric = dot(n, s.view) < 0 ? -n : n;
+        s.front = dot(n, s.view) >= 0;
+        s.shading = s.geometric = s.front ? n : -n;
         s.normal = facing(s.shading, s.view);
         s.position = ray.origin + hit.distance * ray.direction;
         s.origin = s.position + clear * s.normal;
+        s.beneath = s.position - clear * s.normal;
         s.color = thing.front;
         return s;
     }
@@ -111,6 +114,8 @@ Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, co
     s.normal = facing(s.shading, s.view);
     // Above both the surface and the mesh: no facet shadows its own surface.
     s.origin = position + (clear + std::max(0.0, dot(on_mesh - position, s.normal))) * s.normal;
+    s.beneath = position - (clear + std::max(0.0, dot(position - on_mesh, s.normal))) * s.normal;
+    s.front = front;
     s.color = front ? thing.front : thing.back;
     if (finite(du) && finite(dv)) {
         s.ink = thing.isolines.color;

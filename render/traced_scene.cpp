@@ -73,13 +73,13 @@ private:
                 return add_surface(o, objects);
             case SceneObject::Kind::curve:
                 if (o.line.width > 0) return;  // drawn over the picture
-                add_curves(o, {drawn(curve_of(scene_, o))}, o.color.value_or(curve_color()), o.opacity);
+                add_curves(o, {drawn(curve_of(scene_, o))}, o.color.value_or(curve_color()), o);
                 return;
             case SceneObject::Kind::net:
                 return add_net(o);
             case SceneObject::Kind::point:
                 if (o.line.width > 0) return;
-                return add_balls({o.point}, radius_of(o, size_), o.color.value_or(point_color()), o.opacity);
+                return add_balls({o.point}, radius_of(o, size_), o.color.value_or(point_color()), o);
             case SceneObject::Kind::axes:
                 return;  // drawn over the picture
         }
@@ -93,6 +93,7 @@ private:
         // Both sides of a translucent sheet look alike, so that it keeps its colour where several lie over each other.
         thing.back = o.back.value_or(o.opacity < 1 ? thing.front : back_color(thing.front));
         thing.opacity = o.opacity;
+        thing.material = o.material;
         thing.isolines = o.isolines;
         thing.mesh = &mesh;
         thing.inside_out = inside_out(mesh);
@@ -145,10 +146,10 @@ private:
     }
 
     void add_boundary(const SceneObject& o, const Surface& surface) {
-        add_curves(o, drawn_edges(surface.patches, size_), curve_color(), 1);
+        add_curves(o, drawn_edges(surface.patches, size_), curve_color(), {});
     }
 
-    void add_curves(const SceneObject& o, const std::vector<DrawnCurve>& curves, const Color& color, double opacity) {
+    void add_curves(const SceneObject& o, const std::vector<DrawnCurve>& curves, const Color& color, const SceneObject& look) {
         const double radius = radius_of(o, size_);
         std::vector<CubicPiece> pieces;
         std::vector<Point> joints;  // balls close the ends and round the corners
@@ -163,8 +164,8 @@ private:
                 if (i + 1 == some.size() || kink(some[i], some[i + 1])) joints.push_back(some[i][3]);
             pieces.insert(pieces.end(), some.begin(), some.end());
         }
-        add_tubes(pieces, radius, color, opacity);
-        add_balls(joints, radius, color, opacity);
+        add_tubes(pieces, radius, color, look);
+        add_balls(joints, radius, color, look);
     }
     static bool kink(const CubicPiece& a, const CubicPiece& b) {
         const Point in = a[3] - a[2], out = b[1] - b[0];
@@ -179,24 +180,26 @@ private:
             if (distance(a, d) > 1e-9 * size_) rods.push_back(straight(a, d));
         }
         const Color color = o.color.value_or(net_color());
-        if (!(o.line.width > 0)) add_tubes(rods, radius, color, o.opacity);
-        add_balls(o.net.points, kNetBall * radius, color, o.opacity);
+        if (!(o.line.width > 0)) add_tubes(rods, radius, color, o);
+        add_balls(o.net.points, kNetBall * radius, color, o);
     }
 
-    void add_tubes(const std::vector<CubicPiece>& pieces, double radius, const Color& color, double opacity) {
-        if (pieces.empty() || !(radius > 0) || !(opacity > 0)) return;
-        result_.embree->add_tubes(pieces, radius, opacity);
-        add_plain(color, opacity, radius);
+    /// Opacity and material are those of `look`.
+    void add_tubes(const std::vector<CubicPiece>& pieces, double radius, const Color& color, const SceneObject& look) {
+        if (pieces.empty() || !(radius > 0) || !(look.opacity > 0)) return;
+        result_.embree->add_tubes(pieces, radius, look.opacity);
+        add_plain(color, look, radius);
     }
-    void add_balls(const std::vector<Point>& centres, double radius, const Color& color, double opacity) {
-        if (centres.empty() || !(radius > 0) || !(opacity > 0)) return;
-        result_.embree->add_balls(centres, radius, opacity);
-        add_plain(color, opacity, radius);
+    void add_balls(const std::vector<Point>& centres, double radius, const Color& color, const SceneObject& look) {
+        if (centres.empty() || !(radius > 0) || !(look.opacity > 0)) return;
+        result_.embree->add_balls(centres, radius, look.opacity);
+        add_plain(color, look, radius);
     }
-    void add_plain(const Color& color, double opacity, double radius) {
+    void add_plain(const Color& color, const SceneObject& look, double radius) {
         Thing thing;
         thing.front = thing.back = color;
-        thing.opacity = opacity;
+        thing.opacity = look.opacity;
+        thing.material = look.material;
         thing.error = 0.01 * radius;  // Embree's own error is far below
         result_.things.push_back(thing);
     }

@@ -15,6 +15,7 @@ namespace isoparm {
 struct Thing {
     Color front, back;  // colours of the two sides, linear
     double opacity = 1;
+    Material material;
     double error = 0;         // scene units
     bool inside_out = false;  // triangles wind about the back
     bool flipped = false;     // without a mesh: its triangles would wind against S_u x S_v

@@ -1,0 +1,142 @@
+#include "bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "local_frame.h"
+
+namespace isoparm {
+namespace {
+
+using Color = Bsdf::Color;
+constexpr double kPi = std::numbers::pi;
+
+double max_of(const Color& c) { return std::max({c.x, c.y, c.z}); }
+
+/// GGX: density of micro-normals, and what part of them is seen (Walter et al. 2007).
+double facets(const Point& h, double alpha) {
+    const double a = alpha * alpha, d = h.z * h.z * (a - 1) + 1;
+    return a / (kPi * d * d);
+}
+double lambda(const Point& w, double alpha) {
+    const double t = (w.x * w.x + w.y * w.y) / (w.z * w.z);
+    return 0.5 * (std::sqrt(1 + alpha * alpha * t) - 1);
+}
+double seen(const Point& w, double alpha) { return 1 / (1 + lambda(w, alpha)); }
+
+/// A micro-normal in proportion to what `out` sees of it (Heitz, JCGT 2018).
+Point seen_facet(const Point& out, double alpha, const Vec2& s) {
+    const Point v = normalized(Point{alpha * out.x, alpha * out.y, out.z});
+    const double across = v.x * v.x + v.y * v.y;
+    const Point t1 = across > 0 ? Point{-v.y, v.x, 0} / std::sqrt(across) : Point{1, 0, 0}, t2 = cross(v, t1);
+    const Vec2 d = on_disc(s);
+    const double half = 0.5 * (1 + v.z), y = (1 - half) * std::sqrt(std::max(0.0, 1 - d.x * d.x)) + half * d.y;
+    const Point n = d.x * t1 + y * t2 + std::sqrt(std::max(0.0, 1 - d.x * d.x - y * y)) * v;
+    return normalized(Point{alpha * n.x, alpha * n.y, std::max(1e-9, n.z)});
+}
+
+Color schlick(const Color& at_right_angles, double cosine) {
+    const double rest = std::pow(1 - std::clamp(cosine, 0.0, 1.0), 5);
+    return (1 - rest) * at_right_angles + rest * Color{1, 1, 1};
+}
+
+}  // namespace
+
+double fresnel(double cosine, double ior) {
+    const double c = std::clamp(cosine, 0.0, 1.0), refracted = 1 - (1 - c * c) / (ior * ior);
+    if (refracted <= 0) return 1;
+    const double t = std::sqrt(refracted), s = (c - ior * t) / (c + ior * t), p = (ior * c - t) / (ior * c + t);
+    return 0.5 * (s * s + p * p);
+}
+
+double mean_fresnel(double n) {  // Walsh 1926, as in Duntley, The Optical Properties of Diffusing Materials, JOSA 32, 1942
+    const double n2 = n * n, n4 = n2 * n2;
+    return 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) + n2 * (n2 - 1) * (n2 - 1) / std::pow(n2 + 1, 3) * std::log((n - 1) / (n + 1)) -
+           2 * n2 * n * (n2 + 2 * n - 1) / ((n2 + 1) * (n4 - 1)) + 8 * n4 * (n4 + 1) / ((n2 + 1) * (n4 - 1) * (n4 - 1)) * std::log(n);
+}
+
+Bsdf::Bsdf(const Material& material, const Color& color, bool inside)
+    : material_(material), color_(color), inside_(inside), alpha_(std::max(1e-3, material.roughness * material.roughness)) {
+    if (material.kind == Material::Kind::metal) coat_share_ = 1;
+    if (material.kind == Material::Kind::plastic) {
+        const double coat = mean_fresnel(material.ior) + 0.1, base = 0.9 * max_of(color);
+        coat_share_ = coat / (coat + base);
+    }
+}
+
+Color Bsdf::coat(const Point& out, const Point& in) const {
+    if (material_.kind == Material::Kind::diffuse) return {};
+    const Point h = normalized(out + in);
+    const double c = dot(out, h);
+    const double shape = facets(h, alpha_) / ((1 + lambda(out, alpha_) + lambda(in, alpha_)) * 4 * out.z);  // the cosine of `in` cancels
+    return material_.kind == Material::Kind::metal ? shape * schlick(color_, c) : (shape * fresnel(c, material_.ior)) * Color{1, 1, 1};
+}
+
+Color Bsdf::base(const Point& out, const Point& in) const {
+    if (material_.kind == Material::Kind::metal) return {};
+    if (material_.kind == Material::Kind::diffuse) return (in.z / kPi) * color_;
+    // What enters through the coat, is scattered below it, partly thrown back by the coat from below, and leaves.
+    const double ior = material_.ior, kept = 1 - (1 - mean_fresnel(ior)) / (ior * ior);
+    const double through = (1 - fresnel(out.z, ior)) * (1 - fresnel(in.z, ior)) / (ior * ior);
+    const auto one = [&](double c) { return c / (1 - c * kept); };
+    return (through * in.z / kPi) * Color{one(color_.x), one(color_.y), one(color_.z)};
+}
+
+Color Bsdf::value(const Point& out, const Point& in) const {
+    if (specular() || out.z <= 0 || in.z <= 0) return {};
+    return coat(out, in) + base(out, in);
+}
+
+Color Bsdf::spread(const Point& out, const Point& in) const { return specular() || out.z <= 0 || in.z <= 0 ? Color{} : base(out, in); }
+
+double Bsdf::coat_density(const Point& out, const Point& in) const {
+    const Point h = normalized(out + in);
+    return facets(h, alpha_) * seen(out, alpha_) / (4 * out.z);
+}
+
+double Bsdf::density(const Point& out, const Point& in) const {
+    if (specular() || out.z <= 0 || in.z <= 0) return 0;
+    return (coat_share_ > 0 ? coat_share_ * coat_density(out, in) : 0) + (1 - coat_share_) * in.z / kPi;
+}
+
+Bsdf::Sample Bsdf::sample(const Point& out, double lobe, const Vec2& s) const {
+    if (out.z <= 0) return {};
+    if (specular()) return refracted(out, lobe);
+    Sample r;
+    if (lobe < coat_share_) {
+        const Point h = seen_facet(out, alpha_, s);
+        r.direction = 2 * dot(out, h) * h - out;
+    } else {
+        r.direction = on_hemisphere(s);
+        r.spread = true;
+    }
+    r.density = density(out, r.direction);
+    if (r.direction.z <= 0 || !(r.density > 0)) return {};
+    r.weight = value(out, r.direction) / r.density;
+    return r;
+}
+
+Bsdf::Sample Bsdf::refracted(const Point& out, double lobe) const {
+    const double ior = material_.thin ? material_.ior : inside_ ? 1 / material_.ior : material_.ior;
+    double reflected = fresnel(out.z, ior);
+    if (material_.thin) reflected = 2 * reflected / (1 + reflected);  // to and fro between the two sides
+    Sample r;
+    r.density = 1;
+    if (lobe < reflected) {
+        r.direction = {-out.x, -out.y, out.z};
+        r.weight = {1, 1, 1};
+    } else if (material_.thin) {
+        r.direction = -out;
+        r.weight = color_;
+    } else {
+        const double c = std::sqrt(std::max(0.0, 1 - (1 - out.z * out.z) / (ior * ior)));
+        r.direction = {-out.x / ior, -out.y / ior, -c};
+        // Each way through the border takes half of the colour, so that a body shows it once. Radiance is not scaled by the square of
+        // the index: light is followed to where it leaves the body again.
+        r.weight = {std::sqrt(color_.x), std::sqrt(color_.y), std::sqrt(color_.z)};
+    }
+    return r;
+}
+
+}  // namespace isoparm

@@ -1,0 +1,46 @@
+// light.h -- what light comes from and how surfaces scatter it, as a scene says it. Radiances and irradiances are linear RGB.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "scalar/vec.h"
+
+namespace isoparm {
+
+/// How traced light (docs/light.md) is scattered. The colour is the object's.
+struct Material {
+    enum class Kind {
+        diffuse,  // Lambert
+        plastic,  // a rough dielectric coat over it
+        metal,    // the colour is what it reflects at right angles
+        glass     // smooth; the colour is what passes
+    } kind = Kind::plastic;
+    double roughness = 0.3;  // 0: a mirror; the width of the GGX distribution is its square. Not of diffuse and glass
+    double ior = 1.5;        // of plastic and glass, above 1
+    bool thin = false;       // glass: a sheet, which does not bend light, instead of the border of a body
+};
+
+struct Light {
+    enum class Kind {
+        studio,       // what comes with the camera: a soft key light, a sky, a fill
+        environment,  // from all directions
+        directional,  // from far away: a disc of the sky, or one direction
+        sphere,
+        rectangle     // shines on the side of edges[0] x edges[1]
+    } kind = Kind::studio;
+    Vec3<double> power{1, 1, 1};  // studio: factor; environment, sphere, rectangle: radiance; directional: irradiance at right angles to it
+    Point at;                     // sphere: centre; rectangle: corner
+    Point direction;              // directional: unit, toward the light
+    double radius = 0;            // sphere: scene units; directional: radians, half the width of the disc, 0 for one direction
+    std::array<Point, 2> edges;   // rectangle
+};
+
+/// Traced light instead of the figures' own.
+struct LightingSettings {
+    int bounces = 8;        // after the first surface; 0: direct light only
+    bool caustics = false;  // what lights of some place throw by mirrors and through glass onto other surfaces
+    std::vector<Light> lights;
+};
+
+}  // namespace isoparm

@@ -1,0 +1,31 @@
+// path_lighting.h -- traced light: from every surfel one path goes on, bounce by bounce, until it leaves the scene or ends by chance;
+// at each of its points a light is asked for directly, too. With caustics, the mean over all samples is the solution of the rendering
+// equation cut after `bounces`, but for light of one direction that glass bends: no path finds it.
+#pragma once
+#include "lights.h"
+#include "shade.h"
+
+namespace isoparm {
+
+/// Immutable; safe to use from every thread. The same light for every number of threads and any order of pixels.
+class PathLighting : public Lighting {
+public:
+    PathLighting(const LightingSettings& settings, const Camera& camera);
+    int dimensions() const override { return kDimensions * (settings_.bounces + 1); }
+    void shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const override;
+
+private:
+    static constexpr int kDimensions = 4;  // a point: light and lobe; place on the light; direction; end and opacity
+    struct Path;
+    struct Batch;
+    void ask_lights(Batch& batch) const;
+    void scatter(Batch& batch) const;
+    void find_points(const Batch& batch, Hit* hits) const;
+    void follow(Batch& batch) const;
+
+    LightingSettings settings_;
+    Camera camera_;
+    Lights lights_;
+};
+
+}  // namespace isoparm
