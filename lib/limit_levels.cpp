@@ -1,0 +1,227 @@
+#include "limit_levels.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "error.h"
+#include "limit_cell.h"
+#include "limit_vertices.h"
+#include "subdivision.h"
+
+namespace isoparm {
+namespace {
+
+constexpr double kNoise = 1e4 * std::numeric_limits<double>::epsilon();  // of the cage's size: ratios of numbers below say nothing
+
+using Measure = std::optional<double>;
+void grow(Measure& largest, const Measure& x) {
+    if (x && (!largest || *x > *largest || std::isnan(*x))) largest = x;
+}
+void grow(LevelMeasures& all, const LevelMeasures& x) {
+    grow(all.deviation, x.deviation), grow(all.normal_deviation, x.normal_deviation), grow(all.normal_degrees, x.normal_degrees);
+    grow(all.g1_degrees, x.g1_degrees), grow(all.c1, x.c1);
+}
+double degrees(const Point& a, const Point& b) { return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi; }
+
+LimitFrame frame(const Patch& patch, double u, double v) {
+    const PointFrame f = patch.frame(u, v);
+    const auto part = [&](int k) { return Point(f.x.c[k], f.y.c[k], f.z.c[k]); };
+    return {part(0), part(1), part(2)};
+}
+/// Calls f at the samples of a quad, or of a triangle.
+template <class F> void sample(Domain domain, int n, const F& f) {
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n && (domain == Domain::quad || i + j < n); ++j) f(double(i) / (n - 1), double(j) / (n - 1));
+}
+
+/// The patches of all cages' faces and the tangents at their corners.
+struct Limits {
+    std::map<std::string, Patch> patches;
+    std::map<std::string, FaceTangents> tangents;
+    std::map<std::pair<std::string, int>, Point> positions;  // by the masks, at extraordinary corners
+
+    Limits(const Cage& cage, Scheme scheme) {
+        for (const Member& m : make_subdivision(cage, scheme).patches) patches.emplace(m.name, m.patch);
+        for (const LimitSample& s : limit_samples(cage, scheme, 1)) {
+            const int k = corner(s, scheme);
+            if (k < 0 || !finite(s.next)) continue;
+            const std::string name = "#" + std::to_string(s.face) + (s.corner < 0 ? "" : "." + std::to_string(s.corner));
+            tangents[name][k] = {s.next, s.previous};
+            positions[{name, k}] = s.p;
+        }
+    }
+    static int corner(const LimitSample& s, Scheme scheme) {
+        if ((s.u != 0 && s.u != 1) || (s.v != 0 && s.v != 1)) return -1;
+        return scheme == Scheme::loop ? (s.u == 1 ? 1 : s.v == 1 ? 2 : 0) : s.u == 1 ? (s.v == 1 ? 2 : 1) : s.v == 1 ? 3 : 0;
+    }
+    /// The cell of that level; none where it would be more than the patch, or has a corner without tangents.
+    std::optional<LimitCell> cell(const LimitSector& s, int level) const {
+        const auto found = patches.find(s.patch);
+        const auto known = tangents.find(s.patch);
+        if (level < s.level || found == patches.end() || known == tangents.end()) return {};
+        const Patch& patch = found->second;
+        LimitCell cell(patch.domain(), [patch](double u, double v) { return frame(patch, u, v); }, s.corner, std::ldexp(1.0, s.level - level), known->second);
+        return cell.complete() ? std::optional(cell) : std::nullopt;
+    }
+};
+
+LevelMeasures measure(const LimitCell& cell, const Patch& patch, int samples) {
+    LevelMeasures m;
+    const LimitFrame vertex = cell(0, 0);
+    const Point normal = normalized(cross(vertex.du, vertex.dv));
+    sample(cell.domain(), samples, [&](double s, double t) {
+        const LimitFrame x = cell(s, t), y = frame(patch, s, t);
+        const Point off = y.p - x.p, n = cross(x.du, x.dv), k = cross(y.du, y.dv);
+        grow(m.deviation, length(off));
+        grow(m.normal_deviation, std::fabs(dot(off, normal)));
+        if (length(n) > 0 && length(k) > 0) grow(m.normal_degrees, degrees(n, k));  // NaN: a corner without derivatives
+    });
+    return m;
+}
+
+/// Across the edge where sector a ends and sector b begins.
+LevelMeasures measure_edge(const Patch& a, const Patch& b, int samples) {
+    LevelMeasures m;
+    const double lean = a.domain() == Domain::quad ? 0 : 0.5;  // across a triangle: along its median
+    for (int i = 0; i < samples; ++i) {
+        const double t = double(i) / (samples - 1);
+        const LimitFrame x = frame(a, 0, t), y = frame(b, t, 0);
+        const Point n = cross(x.du, x.dv), k = cross(y.du, y.dv);
+        if (!(length(n) > 0) || !(length(k) > 0)) continue;
+        grow(m.g1_degrees, degrees(n, k));
+        grow(m.c1, length((x.du - lean * x.dv) + (y.dv - lean * y.du)));
+    }
+    return m;
+}
+
+using Levels = std::vector<std::optional<LevelMeasures>>;
+/// One vertex by one method.
+Levels measure_vertex(const Limits& limits, const ExtraordinaryVertex& vertex, const LimitMethod& method, const LevelOptions& options) {
+    Levels levels(options.levels + 1);
+    for (int k = 0; k <= options.levels; ++k) {
+        std::vector<Patch> ring;
+        LevelMeasures m;
+        for (const LimitSector& s : vertex.sectors) {
+            const auto cell = limits.cell(s, k);
+            if (!cell) break;
+            ring.push_back(method.make(*cell));
+            grow(m, measure(*cell, ring.back(), options.samples));
+        }
+        if (ring.size() < vertex.sectors.size()) continue;
+        for (std::size_t i = 0; i < ring.size(); ++i) grow(m, measure_edge(ring[i], ring[(i + 1) % ring.size()], options.samples));
+        levels[k] = m;
+    }
+    return levels;
+}
+
+/// The worst at a level over the vertices that have it, and in comparison with the level before over those that have both.
+LimitLevel at_level(const std::vector<const Levels*>& vertices, int k, int valence, const std::string& method, double noise) {
+    LimitLevel row{k, valence, method, 0, {}, {}, {}, {}};
+    LevelMeasures now, before;
+    for (const Levels* v : vertices) {
+        if (!(*v)[k]) continue;
+        ++row.vertices;
+        grow(row.measured, *(*v)[k]);
+        if (k == 0 || !(*v)[k - 1]) continue;
+        grow(now, *(*v)[k]), grow(before, *(*v)[k - 1]);
+    }
+    const auto ratio = [](const Measure& a, const Measure& b, double least) { return a && b && *a > least && *b > least ? Measure(*a / *b) : Measure(); };
+    row.ratio_deviation = ratio(now.deviation, before.deviation, noise);
+    row.ratio_normal = ratio(now.normal_deviation, before.normal_deviation, noise);
+    if (row.ratio_normal) row.ratio_g1 = ratio(now.g1_degrees, before.g1_degrees, 1e-9);
+    return row;
+}
+
+void measure_vertices(const LimitSurface& limit, const LevelOptions& options, double noise, LimitLevels& result) {
+    const Scheme scheme = limit.scheme();
+    const Limits limits(limit.cage(), scheme);
+    const auto vertices = extraordinary_vertices(limit.cage(), scheme);
+    const auto& methods = scheme == Scheme::loop ? triangle_methods() : quad_methods();
+    std::vector<std::vector<Levels>> all(vertices.size(), std::vector<Levels>(methods.size()));
+    tbb::parallel_for(std::size_t(0), vertices.size(), [&](std::size_t v) {
+        for (std::size_t m = 0; m < methods.size(); ++m) all[v][m] = measure_vertex(limits, vertices[v], methods[m], options);
+    });
+    std::map<int, std::vector<std::size_t>> by_valence;
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        const Levels& best = all[v].back();
+        const auto first = std::find_if(best.begin(), best.end(), [](const auto& m) { return m.has_value(); });
+        if (first == best.end()) continue;
+        by_valence[vertices[v].valence].push_back(v);
+        grow(result.worst, **first);
+        for (const LimitSector& s : vertices[v].sectors) {
+            result.compared[s.face] = 1;
+            const Patch& patch = limits.patches.at(s.patch);
+            const LimitCell whole(patch.domain(), [&](double a, double b) { return frame(patch, a, b); }, s.corner, 1);
+            grow(result.masks_gap, distance(whole(0, 0).p, limits.positions.at({s.patch, s.corner})));
+        }
+    }
+    for (const auto& [n, list] : by_valence) {
+        const Eigenvalues e = eigenvalues(scheme, n);
+        result.valences.push_back({n, static_cast<int>(list.size()), e.lambda, e.mu});
+        for (std::size_t m = 0; m < methods.size(); ++m) {
+            std::vector<const Levels*> rows;
+            for (const std::size_t v : list) rows.push_back(&all[v][m]);
+            for (int k = 0; k <= options.levels; ++k)
+                if (LimitLevel row = at_level(rows, k, n, methods[m].name, noise); row.vertices > 0) result.by_level.push_back(std::move(row));
+        }
+    }
+}
+
+/// Regular faces of Loop's scheme: sub-triangles about the centre, where all methods see the same surface, ever nearer to its Taylor polynomial.
+void measure_loop(const LimitSurface& limit, int levels, int samples, double noise, LimitLevels& result) {
+    const auto& methods = regular_triangle_methods();
+    std::vector<std::vector<std::vector<double>>> all(limit.faces());  // of each face: by method and level
+    tbb::parallel_for(0, limit.faces(), [&](int f) {
+        if (limit.kind(f) != LimitFace::regular) return;
+        const LimitCell face(Domain::triangle, [&, f](double u, double v) { const LimitPoint x = limit(f, u, v); return LimitFrame{x.p, x.du, x.dv}; }, 0, 1);
+        for (const LimitMethod& method : methods) {
+            all[f].emplace_back();
+            for (int k = 0; k <= levels; ++k) {
+                const double h = std::ldexp(1.0, -k), low = (1 - h) / 3;
+                const LimitCell cell = face.part({low, low}, {low + h, low}, {low, low + h});
+                const Patch patch = method.make(cell);
+                Measure worst;
+                sample(Domain::triangle, samples, [&](double s, double t) { grow(worst, distance(patch.point(s, t), cell(s, t).p)); });
+                all[f].back().push_back(*worst);
+            }
+        }
+    });
+    for (std::size_t m = 0; m < methods.size(); ++m)
+        for (int k = 0; k <= levels; ++k) {
+            Measure now, before;
+            for (const auto& face : all)
+                if (!face.empty()) {
+                    grow(now, face[m][k]);
+                    if (k > 0) grow(before, face[m][k - 1]);
+                }
+            if (!now) return;
+            result.loop.push_back({methods[m].name, methods[m].order, k, *now, before && *now > noise ? Measure(*before / *now) : Measure()});
+        }
+}
+
+}  // namespace
+
+LimitLevels measure_levels(const LimitSurface& limit, const LevelOptions& options) {
+    if (options.levels < 0 || options.levels > 12) throw Error(ErrorKind::usage, "levels: found " + std::to_string(options.levels) + ", expected 0 to 12");
+    if (options.samples < 2 || options.samples > 65)
+        throw Error(ErrorKind::usage, "samples each way over a cell: found " + std::to_string(options.samples) + ", expected 2 to 65");
+    LimitLevels result;
+    result.compared.assign(limit.faces(), 0);
+    double size = 0;
+    for (const Point& p : limit.cage().positions) size = std::max(size, length(p));
+    if (limit.scheme() == Scheme::loop) measure_loop(limit, std::min(options.levels, 6), options.samples, kNoise * size, result);
+    if (limit.scheme() == Scheme::bilinear) return result;
+    try {
+        measure_vertices(limit, options, kNoise * size, result);
+    } catch (const Error& e) {
+        result.refused = e.what();
+    }
+    return result;
+}
+
+}  // namespace isoparm
