@@ -119,6 +119,14 @@ Patch three_curves(const LimitCell& c) { return make_three_curves(quartics(c)); 
 
 }  // namespace
 
+LimitFunction limit_function(const Patch& patch) {
+    return [patch](double u, double v) {
+        const PointFrame f = patch.frame(u, v);
+        const auto part = [&](int k) { return Point(f.x.c[k], f.y.c[k], f.z.c[k]); };
+        return LimitFrame{part(0), part(1), part(2)};
+    };
+}
+
 LimitCell::LimitCell(Domain domain, LimitFunction limit) : domain_(domain), limit_(std::move(limit)) {}
 
 LimitCell::LimitCell(Domain domain, LimitFunction limit, int corner, double h, const FaceTangents& tangents) : LimitCell(domain, std::move(limit)) {

@@ -21,6 +21,7 @@ struct LimitFrame {
     Point p, du, dv;
 };
 using LimitFunction = std::function<LimitFrame(double u, double v)>;
+LimitFunction limit_function(const Patch& patch);
 
 /// Directions of the limit along the two sides that begin at a corner.
 struct CornerTangents {

@@ -28,31 +28,26 @@ void grow(LevelMeasures& all, const LevelMeasures& x) {
 }
 double degrees(const Point& a, const Point& b) { return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi; }
 
-LimitFrame frame(const Patch& patch, double u, double v) {
-    const PointFrame f = patch.frame(u, v);
-    const auto part = [&](int k) { return Point(f.x.c[k], f.y.c[k], f.z.c[k]); };
-    return {part(0), part(1), part(2)};
-}
 /// Calls f at the samples of a quad, or of a triangle.
 template <class F> void sample(Domain domain, int n, const F& f) {
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n && (domain == Domain::quad || i + j < n); ++j) f(double(i) / (n - 1), double(j) / (n - 1));
 }
 
-/// The patches of all cages' faces and the tangents at their corners.
+/// The limit surface over all faces, and the tangents at their corners.
 struct Limits {
     std::map<std::string, Patch> patches;
     std::map<std::string, FaceTangents> tangents;
-    std::map<std::pair<std::string, int>, Point> positions;  // by the masks, at extraordinary corners
+    Measure masks_gap;
 
     Limits(const Cage& cage, Scheme scheme) {
         for (const Member& m : make_subdivision(cage, scheme).patches) patches.emplace(m.name, m.patch);
         for (const LimitSample& s : limit_samples(cage, scheme, 1)) {
-            const int k = corner(s, scheme);
-            if (k < 0 || !finite(s.next)) continue;
             const std::string name = "#" + std::to_string(s.face) + (s.corner < 0 ? "" : "." + std::to_string(s.corner));
-            tangents[name][k] = {s.next, s.previous};
-            positions[{name, k}] = s.p;
+            const auto patch = patches.find(name);
+            if (patch == patches.end()) continue;
+            if (s.exact) grow(masks_gap, distance(patch->second.point(s.u, s.v), s.p));
+            if (const int k = corner(s, scheme); k >= 0 && finite(s.next)) tangents[name][k] = {s.next, s.previous};
         }
     }
     static int corner(const LimitSample& s, Scheme scheme) {
@@ -65,17 +60,18 @@ struct Limits {
         const auto known = tangents.find(s.patch);
         if (level < s.level || found == patches.end() || known == tangents.end()) return {};
         const Patch& patch = found->second;
-        LimitCell cell(patch.domain(), [patch](double u, double v) { return frame(patch, u, v); }, s.corner, std::ldexp(1.0, s.level - level), known->second);
+        LimitCell cell(patch.domain(), limit_function(patch), s.corner, std::ldexp(1.0, s.level - level), known->second);
         return cell.complete() ? std::optional(cell) : std::nullopt;
     }
 };
 
 LevelMeasures measure(const LimitCell& cell, const Patch& patch, int samples) {
     LevelMeasures m;
+    const LimitFunction surface = limit_function(patch);
     const LimitFrame vertex = cell(0, 0);
     const Point normal = normalized(cross(vertex.du, vertex.dv));
     sample(cell.domain(), samples, [&](double s, double t) {
-        const LimitFrame x = cell(s, t), y = frame(patch, s, t);
+        const LimitFrame x = cell(s, t), y = surface(s, t);
         const Point off = y.p - x.p, n = cross(x.du, x.dv), k = cross(y.du, y.dv);
         grow(m.deviation, length(off));
         grow(m.normal_deviation, std::fabs(dot(off, normal)));
@@ -87,10 +83,11 @@ LevelMeasures measure(const LimitCell& cell, const Patch& patch, int samples) {
 /// Across the edge where sector a ends and sector b begins.
 LevelMeasures measure_edge(const Patch& a, const Patch& b, int samples) {
     LevelMeasures m;
+    const LimitFunction left = limit_function(a), right = limit_function(b);
     const double lean = a.domain() == Domain::quad ? 0 : 0.5;  // across a triangle: along its median
     for (int i = 0; i < samples; ++i) {
         const double t = double(i) / (samples - 1);
-        const LimitFrame x = frame(a, 0, t), y = frame(b, t, 0);
+        const LimitFrame x = left(0, t), y = right(t, 0);
         const Point n = cross(x.du, x.dv), k = cross(y.du, y.dv);
         if (!(length(n) > 0) || !(length(k) > 0)) continue;
         grow(m.g1_degrees, degrees(n, k));
@@ -137,9 +134,8 @@ LimitLevel at_level(const std::vector<const Levels*>& vertices, int k, int valen
     return row;
 }
 
-void measure_vertices(const LimitSurface& limit, const LevelOptions& options, double noise, LimitLevels& result) {
+void measure_vertices(const LimitSurface& limit, const Limits& limits, const LevelOptions& options, double noise, LimitLevels& result) {
     const Scheme scheme = limit.scheme();
-    const Limits limits(limit.cage(), scheme);
     const auto vertices = extraordinary_vertices(limit.cage(), scheme);
     const auto& methods = scheme == Scheme::loop ? triangle_methods() : quad_methods();
     std::vector<std::vector<Levels>> all(vertices.size(), std::vector<Levels>(methods.size()));
@@ -153,12 +149,7 @@ void measure_vertices(const LimitSurface& limit, const LevelOptions& options, do
         if (first == best.end()) continue;
         by_valence[vertices[v].valence].push_back(v);
         grow(result.worst, **first);
-        for (const LimitSector& s : vertices[v].sectors) {
-            result.compared[s.face] = 1;
-            const Patch& patch = limits.patches.at(s.patch);
-            const LimitCell whole(patch.domain(), [&](double a, double b) { return frame(patch, a, b); }, s.corner, 1);
-            grow(result.masks_gap, distance(whole(0, 0).p, limits.positions.at({s.patch, s.corner})));
-        }
+        for (const LimitSector& s : vertices[v].sectors) result.compared[s.face] = 1;
     }
     for (const auto& [n, list] : by_valence) {
         const Eigenvalues e = eigenvalues(scheme, n);
@@ -204,6 +195,12 @@ void measure_loop(const LimitSurface& limit, int levels, int samples, double noi
         }
 }
 
+int regular(const LimitSurface& limit) {
+    int count = 0;
+    for (int f = 0; f < limit.faces(); ++f) count += limit.kind(f) == LimitFace::regular;
+    return count;
+}
+
 }  // namespace
 
 LimitLevels measure_levels(const LimitSurface& limit, const LevelOptions& options) {
@@ -215,9 +212,12 @@ LimitLevels measure_levels(const LimitSurface& limit, const LevelOptions& option
     double size = 0;
     for (const Point& p : limit.cage().positions) size = std::max(size, length(p));
     if (limit.scheme() == Scheme::loop) measure_loop(limit, std::min(options.levels, 6), options.samples, kNoise * size, result);
-    if (limit.scheme() == Scheme::bilinear) return result;
+    if (limit.faces() == regular(limit)) return result;
     try {
-        measure_vertices(limit, options, kNoise * size, result);
+        const Limits limits(limit.cage(), limit.scheme());
+        result.masks_gap = limits.masks_gap;
+        result.subcells = measure_subcells(limit, limits.patches);
+        measure_vertices(limit, limits, options, kNoise * size, result);
     } catch (const Error& e) {
         result.refused = e.what();
     }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "limit.h"
+#include "limit_subcells.h"
 
 namespace isoparm {
 
@@ -47,7 +48,8 @@ struct LimitLevels {
     std::vector<LimitLevel> by_level;  // by valence, method, level
     std::vector<char> compared;        // of each face of the cage: has it a cell at an extraordinary vertex?
     LevelMeasures worst;               // of the best method, each vertex at its first level
-    std::optional<double> masks_gap;   // limit positions at extraordinary vertices: make_subdivision() against OpenSubdiv's masks
+    SubcellReport subcells;
+    std::optional<double> masks_gap;   // limit positions at the vertices refined once: make_subdivision() against OpenSubdiv's masks, where these are exact
     std::vector<LoopLevel> loop;
 };
 
