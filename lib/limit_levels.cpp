@@ -43,7 +43,7 @@ struct Limits {
     Limits(const Cage& cage, Scheme scheme) {
         for (const Member& m : make_subdivision(cage, scheme).patches) patches.emplace(m.name, m.patch);
         for (const LimitSample& s : limit_samples(cage, scheme, 1)) {
-            const std::string name = "#" + std::to_string(s.face) + (s.corner < 0 ? "" : "." + std::to_string(s.corner));
+            const std::string name = patch_name(s.face, s.corner);
             const auto patch = patches.find(name);
             if (patch == patches.end()) continue;
             if (s.exact) grow(masks_gap, distance(patch->second.point(s.u, s.v), s.p));
@@ -163,13 +163,30 @@ void measure_vertices(const LimitSurface& limit, const Limits& limits, const Lev
     }
 }
 
+/// Nielson's surface over a whole regular face against the limit, along the edges: positions and derivatives, which it interpolates.
+double edge_gap(const LimitCell& face, int samples) {
+    const LimitFunction surface = limit_function(triangle_methods().back().make(face));
+    double gap = 0;
+    for (int i = 1; i < samples - 1; ++i) {
+        const double t = double(i) / (samples - 1);
+        for (const auto& [s, v] : {std::pair(t, 0.0), std::pair(0.0, t), std::pair(t, 1 - t)}) {
+            const LimitFrame x = face(s, v), y = surface(s, v);
+            for (const double d : {distance(x.p, y.p), distance(x.du, y.du), distance(x.dv, y.dv)})
+                if (!(d <= gap)) gap = d;
+        }
+    }
+    return gap;
+}
+
 /// Regular faces of Loop's scheme: sub-triangles about the centre, where all methods see the same surface, ever nearer to its Taylor polynomial.
 void measure_loop(const LimitSurface& limit, int levels, int samples, double noise, LimitLevels& result) {
     const auto& methods = regular_triangle_methods();
     std::vector<std::vector<std::vector<double>>> all(limit.faces());  // of each face: by method and level
+    std::vector<Measure> gaps(limit.faces());
     tbb::parallel_for(0, limit.faces(), [&](int f) {
         if (limit.kind(f) != LimitFace::regular) return;
         const LimitCell face(Domain::triangle, [&, f](double u, double v) { const LimitPoint x = limit(f, u, v); return LimitFrame{x.p, x.du, x.dv}; }, 0, 1);
+        gaps[f] = edge_gap(face, samples);
         for (const LimitMethod& method : methods) {
             all[f].emplace_back();
             for (int k = 0; k <= levels; ++k) {
@@ -182,6 +199,7 @@ void measure_loop(const LimitSurface& limit, int levels, int samples, double noi
             }
         }
     });
+    for (const Measure& gap : gaps) grow(result.loop_edges, gap);
     for (std::size_t m = 0; m < methods.size(); ++m)
         for (int k = 0; k <= levels; ++k) {
             Measure now, before;
@@ -208,7 +226,7 @@ LimitLevels measure_levels(const LimitSurface& limit, const LevelOptions& option
     if (options.samples < 2 || options.samples > 65)
         throw Error(ErrorKind::usage, "samples each way over a cell: found " + std::to_string(options.samples) + ", expected 2 to 65");
     LimitLevels result;
-    result.compared.assign(limit.faces(), 0);
+    result.compared.assign(limit.faces(), 0), result.subcells.compared = result.compared;
     double size = 0;
     for (const Point& p : limit.cage().positions) size = std::max(size, length(p));
     if (limit.scheme() == Scheme::loop) measure_loop(limit, std::min(options.levels, 6), options.samples, kNoise * size, result);

@@ -51,6 +51,11 @@ struct LimitLevels {
     SubcellReport subcells;
     std::optional<double> masks_gap;   // limit positions at the vertices refined once: make_subdivision() against OpenSubdiv's masks, where these are exact
     std::vector<LoopLevel> loop;
+    std::optional<double> loop_edges;  // Nielson's surfaces over Loop's regular faces: positions and derivatives along the edges, against the limit
+    /// What must be equal up to rounding is, within the tolerance.
+    bool identities_hold(double tolerance) const {
+        return subcells.deviation.value_or(0) <= tolerance && masks_gap.value_or(0) <= tolerance && loop_edges.value_or(0) <= tolerance;
+    }
 };
 
 struct LevelOptions {

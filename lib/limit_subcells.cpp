@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "limit_cell.h"
+#include "limit_vertices.h"
 
 namespace isoparm {
 namespace {
@@ -13,9 +14,9 @@ namespace {
 constexpr int kSamples = 5;  // bicubic surfaces that agree at 4 x 4 points are equal
 constexpr double kInfinite = 10;
 
-/// The level at which nothing semi-sharp is left at a vertex, for each vertex; at least 1.
+/// The level at which nothing semi-sharp is left at a vertex, for each vertex; at least 2: then not all cells of a face are at its corners.
 std::vector<int> levels(const Cage& cage) {
-    std::vector<int> level(cage.positions.size(), 1);
+    std::vector<int> level(cage.positions.size(), 2);
     const auto raise = [&](int v, double sharpness) {
         if (sharpness < kInfinite) level[v] = std::max(level[v], static_cast<int>(std::ceil(sharpness)));
     };
@@ -60,11 +61,10 @@ SubcellReport measure_subcells(const LimitSurface& limit, const std::map<std::st
         if (limit.kind(f) != LimitFace::irregular) return;
         const auto& corners = cage.faces[f];
         int& deepest = faces[f].deepest;
-        for (const int v : corners) deepest = std::max(deepest, limit.scheme() == Scheme::bilinear ? 1 : level[v]);
-        const std::string name = "#" + std::to_string(f);
-        if (const auto whole = patches.find(name); whole != patches.end()) return compare(whole->second, deepest, faces[f]);
-        for (std::size_t k = 0; k < corners.size(); ++k)
-            if (const auto part = patches.find(name + "." + std::to_string(k)); part != patches.end()) compare(part->second, deepest, faces[f]);
+        for (const int v : corners) deepest = std::max(deepest, limit.scheme() == Scheme::bilinear ? 2 : level[v]);
+        if (const auto whole = patches.find(patch_name(f)); whole != patches.end()) return compare(whole->second, deepest, faces[f]);
+        for (int k = 0; k < static_cast<int>(corners.size()); ++k)
+            if (const auto part = patches.find(patch_name(f, k)); part != patches.end()) compare(part->second, deepest, faces[f]);
     });
     for (int f = 0; f < limit.faces(); ++f) {
         const SubcellReport& r = faces[f];

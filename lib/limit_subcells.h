@@ -10,8 +10,8 @@
 
 namespace isoparm {
 
-/// A face beside an extraordinary vertex, or of another size, has such cells at level 1; one at semi-sharp creases of sharpness s at level ceil(s), when they have
-/// become smooth. Cells at vertices where the limit has no derivatives are left out.
+/// A face beside an extraordinary vertex, or of another size, has such cells at level 2; one at semi-sharp creases of sharpness s at level ceil(s), when they have
+/// become smooth (not above: that is the negative control of the tests). Cells at vertices where the limit has no derivatives are left out.
 struct SubcellReport {
     int faces = 0, cells = 0;          // compared: of each face up to 16 cells, at its corners, beside them and in its middle
     int deepest = 0;                   // level of the smallest cells

@@ -31,8 +31,7 @@ public:
             const auto& c = cage_.faces[f];
             const int n = static_cast<int>(c.size()), k = static_cast<int>(std::find(c.begin(), c.end(), v) - c.begin());
             if (hole(f)) return {};
-            const std::string name = "#" + std::to_string(f);
-            sectors.push_back(n == size_ ? LimitSector{f, name, k, 0} : LimitSector{f, name + "." + std::to_string(k), 0, 1});
+            sectors.push_back(n == size_ ? LimitSector{f, patch_name(f), k, 0} : LimitSector{f, patch_name(f, k), 0, 1});
             const auto across = halves_.find({v, c[(k + n - 1) % n]});
             if (across == halves_.end()) return {};
             f = across->second.face;
@@ -43,7 +42,7 @@ public:
     std::vector<LimitSector> centre(int face) const {
         std::vector<LimitSector> sectors;
         const int n = static_cast<int>(cage_.faces[face].size());
-        for (int k = 0; k < n; ++k) sectors.push_back({face, "#" + std::to_string(face) + "." + std::to_string(k), 2, 1});
+        for (int k = 0; k < n; ++k) sectors.push_back({face, patch_name(face, k), 2, 1});
         return sectors;
     }
 
@@ -59,6 +58,13 @@ private:
 };
 
 }  // namespace
+
+std::string patch_name(int face, int corner) {
+    std::string name("#");
+    name.append(std::to_string(face));
+    if (corner >= 0) name.append(".").append(std::to_string(corner));
+    return name;
+}
 
 Eigenvalues eigenvalues(Scheme scheme, int valence) {
     const double n = valence, turn = 2 * std::numbers::pi / n;

@@ -9,6 +9,9 @@
 
 namespace isoparm {
 
+/// What make_subdivision() calls the patch of a face, or of one of its corners.
+std::string patch_name(int face, int corner = -1);
+
 /// Subdominant eigenvalues of the subdivision matrix around a vertex of valence n: positions shrink by lambda a level, what leaves the tangent plane by mu.
 struct Eigenvalues {
     double lambda, mu;
