@@ -59,9 +59,11 @@ LimitResult measure(const std::string& path, Scheme scheme, const Options& optio
         const LimitSurface limit(cage, scheme);
         LimitReport regular = compare_limit(limit, how);
         LimitLevels irregular = measure_levels(limit, levels);
-        const auto done = [&](const UncomparedFace& f) { return irregular.compared[f.face] || irregular.subcells.compared[f.face]; };
-        regular.not_compared.erase(std::remove_if(regular.not_compared.begin(), regular.not_compared.end(), done), regular.not_compared.end());
-        return {path, cage, std::move(regular), std::move(irregular)};
+        std::vector<UncomparedFace> nowhere, subcells_only;
+        for (const UncomparedFace& f : regular.not_compared)
+            if (!irregular.compared[f.face]) (irregular.subcells.compared[f.face] ? subcells_only : nowhere).push_back(f);
+        regular.not_compared = std::move(nowhere);
+        return {path, cage, std::move(regular), std::move(irregular), std::move(subcells_only)};
     } catch (const Error& e) {
         throw Error(e.kind(), path + ": " + e.what());
     }

@@ -127,19 +127,18 @@ void print_loop(const LimitResult& result, std::ostream& out) {
     out << "\n";
 }
 
-void print_not_compared(const LimitResult& result, std::ostream& out) {
-    const auto& list = result.regular.not_compared;
-    if (!result.irregular.refused.empty()) out << "\nIrregular faces are not compared: " << result.irregular.refused << "\n";
+void print_faces(const char* title, const Cage& cage, const std::vector<UncomparedFace>& list, std::ostream& out) {
     if (list.empty()) return;
-    out << "\nNot compared: " << list.size() << (list.size() == 1 ? " face\n" : " faces\n");
+    out << "\n" << title << ": " << list.size() << (list.size() == 1 ? " face\n" : " faces\n");
     std::map<std::string, std::vector<int>> by_reason;
     for (const auto& [face, reason] : list) by_reason[reason].push_back(face);
     for (const auto& [reason, faces] : by_reason) {
         out << "  " << faces.size() << "  " << reason << ": ";
-        for (std::size_t k = 0; k < faces.size() && k < 6; ++k) out << (k ? ", " : "") << place(result.cage, faces[k]);
+        for (std::size_t k = 0; k < faces.size() && k < 6; ++k) out << (k ? ", " : "") << place(cage, faces[k]);
         out << (faces.size() > 6 ? ", ...\n" : "\n");
     }
 }
+std::string json(const UncomparedFace& f) { return "{\"face\": " + std::to_string(f.face) + ", \"reason\": " + json_text(f.reason) + "}"; }
 
 }  // namespace
 
@@ -155,7 +154,7 @@ std::string limit_json(const LimitResult& result) {
     std::ostringstream out;
     out << "{\"scheme\": \"" << limit_schemes()[static_cast<int>(r.scheme)] << "\", \"faces\": " << r.faces << ", \"regular\": " << r.regular
         << ", \"irregular\": " << r.irregular << ", \"without_limit\": " << r.without_limit << ",\n"
-        << " \"max_deviation\": {\"regular\": " << json_text(r.deviation) << ", \"irregular\": " << json_text(i.worst.deviation) << "},\n"
+        << " \"max_deviation\": {\"regular\": " << json_text(r.deviation) << ", \"irregular\": " << json_text(larger(i.worst.deviation, i.subcells.deviation)) << "},\n"
         << " \"max_normal_degrees\": {\"regular\": " << json_text(r.normal_degrees) << ", \"irregular\": " << json_text(i.worst.normal_degrees) << "},\n"
         << " \"max_network_gap\": " << json_text(r.network_gap) << ",\n"
         << " \"control\": {\"bilinear_coons\": " << json_text(r.bilinear_coons) << "},\n"
@@ -170,9 +169,8 @@ std::string limit_json(const LimitResult& result) {
         << " \"measured\": \"sampled\", \"samples\": " << r.samples << ",\n \"by_level\": "
         << json_list(i.by_level, [&](const LimitLevel& row) { return json(row, theory(i, row.valence)); }) << ",\n \"loop\": "
         << json_list(i.loop, [](const LoopLevel& row) { return json(row); }) << ",\n \"loop_edges\": " << json_text(i.loop_edges) << ",\n \"refused\": "
-        << (i.refused.empty() ? "null" : json_text(i.refused)) << ",\n \"not_compared\": " << json_list(r.not_compared, [](const UncomparedFace& f) {
-               return "{\"face\": " + std::to_string(f.face) + ", \"reason\": " + json_text(f.reason) + "}";
-           })
+        << (i.refused.empty() ? "null" : json_text(i.refused)) << ",\n \"subcells_only\": " << json_list(result.subcells_only, [](const UncomparedFace& f) { return json(f); })
+        << ",\n \"not_compared\": " << json_list(r.not_compared, [](const UncomparedFace& f) { return json(f); })
         << "}\n";
     return out.str();
 }
@@ -186,7 +184,9 @@ void print_limit(const LimitResult& result, std::ostream& out) {
     print_subcells(result, out);
     print_levels(result.irregular, out);
     print_loop(result, out);
-    print_not_compared(result, out);
+    if (!result.irregular.refused.empty()) out << "\nIrregular faces are not compared: " << result.irregular.refused << "\n";
+    print_faces("Compared on sub-cells only", result.cage, result.subcells_only, out);
+    print_faces("Not compared", result.cage, r.not_compared, out);
 }
 
 }  // namespace isoparm

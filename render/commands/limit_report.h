@@ -17,6 +17,7 @@ struct LimitResult {
     Cage cage;
     LimitReport regular;  // not_compared: also not as an irregular face
     LimitLevels irregular;
+    std::vector<UncomparedFace> subcells_only;  // faces whose extraordinary vertices, if any, have no tangents
 
     bool identities_hold() const { return regular.identity_holds() && irregular.identities_hold(regular.tolerance); }
     bool something_compared() const { return regular.deviation || irregular.subcells.cells > 0 || !irregular.by_level.empty() || !irregular.loop.empty(); }
