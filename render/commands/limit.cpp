@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "commands/limit_report.h"
+#include "commands/limit_scene.h"
 #include "commands/options.h"
 #include "error.h"
 #include "io/atomic_file.h"
@@ -13,6 +14,7 @@ namespace isoparm {
 namespace {
 
 constexpr const char* kHelp = R"(usage: isoparm limit CAGE.obj [--scheme S] [--json] [-o DIR] [--samples N] [--levels K]
+       isoparm limit --scene SCENE --surface S [--json] [-o DIR]
 
 Builds composite Coons surfaces on the limit surface of a subdivision cage and measures how far they are from it.
 
@@ -25,6 +27,10 @@ vertex, level by level: deviation, its part along the normal, and the angle of n
 by lambda, mu and mu/lambda a level, the eigenvalues of subdivision; the ratios observed stand beside them.
 Loop's scheme (triangles): regular faces are quartic box splines, which no Coons triangle here reproduces: deviations of
 seven methods over ever smaller triangles, with the ratios that their orders promise; extraordinary vertices as above.
+
+With --scene: each patch of a surface on rectangles against the limit of a cage: the control points of the uniform bicubic
+B-spline through ever more of its points; the deviation must fall 16 times a halving where the patch is smooth. -o DIR
+writes the last cages as well, DIR/cage-0.obj ...
 
 CAGE.obj       v and f lines, and OpenSubdiv's tags (indices from 0): t crease 2/1/0 V0 V1 SHARPNESS,
                t corner 1/1/0 V SHARPNESS, t hole 1/0/0 FACE, t interpolateboundary 1/0/0 N
@@ -70,7 +76,8 @@ LimitResult measure(const std::string& path, Scheme scheme, const Options& optio
 }
 
 int run(const std::vector<std::string>& arguments) {
-    const Options options("limit", arguments, {{"--scheme", true}, {"--json", false}, {"-o", true}, {"--samples", true}, {"--levels", true}});
+    const Options options("limit", arguments, {{"--scheme", true}, {"--json", false}, {"-o", true}, {"--samples", true}, {"--levels", true}, {"--scene", true}, {"--surface", true}});
+    if (options.has("--scene")) return run_limit_scene(options);
     if (options.words().size() != 1) options.fail("found " + std::to_string(options.words().size()) + " file names, expected one cage, CAGE.obj");
     const std::string word = options.word("--scheme", limit_schemes());
     const auto scheme = static_cast<Scheme>(std::find(limit_schemes().begin(), limit_schemes().end(), word) - limit_schemes().begin());
