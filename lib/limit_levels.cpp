@@ -11,7 +11,6 @@
 #include "error.h"
 #include "limit_cell.h"
 #include "limit_vertices.h"
-#include "subdivision.h"
 
 namespace isoparm {
 namespace {
@@ -33,37 +32,6 @@ template <class F> void sample(Domain domain, int n, const F& f) {
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n && (domain == Domain::quad || i + j < n); ++j) f(double(i) / (n - 1), double(j) / (n - 1));
 }
-
-/// The limit surface over all faces, and the tangents at their corners.
-struct Limits {
-    std::map<std::string, Patch> patches;
-    std::map<std::string, FaceTangents> tangents;
-    Measure masks_gap;
-
-    Limits(const Cage& cage, Scheme scheme) {
-        for (const Member& m : make_subdivision(cage, scheme).patches) patches.emplace(m.name, m.patch);
-        for (const LimitSample& s : limit_samples(cage, scheme, 1)) {
-            const std::string name = patch_name(s.face, s.corner);
-            const auto patch = patches.find(name);
-            if (patch == patches.end()) continue;
-            if (s.exact) grow(masks_gap, distance(patch->second.point(s.u, s.v), s.p));
-            if (const int k = corner(s, scheme); k >= 0 && finite(s.next)) tangents[name][k] = {s.next, s.previous};
-        }
-    }
-    static int corner(const LimitSample& s, Scheme scheme) {
-        if ((s.u != 0 && s.u != 1) || (s.v != 0 && s.v != 1)) return -1;
-        return scheme == Scheme::loop ? (s.u == 1 ? 1 : s.v == 1 ? 2 : 0) : s.u == 1 ? (s.v == 1 ? 2 : 1) : s.v == 1 ? 3 : 0;
-    }
-    /// The cell of that level; none where it would be more than the patch, or has a corner without tangents.
-    std::optional<LimitCell> cell(const LimitSector& s, int level) const {
-        const auto found = patches.find(s.patch);
-        const auto known = tangents.find(s.patch);
-        if (level < s.level || found == patches.end() || known == tangents.end()) return {};
-        const Patch& patch = found->second;
-        LimitCell cell(patch.domain(), limit_function(patch), s.corner, std::ldexp(1.0, s.level - level), known->second);
-        return cell.complete() ? std::optional(cell) : std::nullopt;
-    }
-};
 
 LevelMeasures measure(const LimitCell& cell, const Patch& patch, int samples) {
     LevelMeasures m;
@@ -98,7 +66,7 @@ LevelMeasures measure_edge(const Patch& a, const Patch& b, int samples) {
 
 using Levels = std::vector<std::optional<LevelMeasures>>;
 /// One vertex by one method.
-Levels measure_vertex(const Limits& limits, const ExtraordinaryVertex& vertex, const LimitMethod& method, const LevelOptions& options) {
+Levels measure_vertex(const LimitFaces& limits, const ExtraordinaryVertex& vertex, const LimitMethod& method, const LevelOptions& options) {
     Levels levels(options.levels + 1);
     for (int k = 0; k <= options.levels; ++k) {
         std::vector<Patch> ring;
@@ -134,7 +102,7 @@ LimitLevel at_level(const std::vector<const Levels*>& vertices, int k, int valen
     return row;
 }
 
-void measure_vertices(const LimitSurface& limit, const Limits& limits, const LevelOptions& options, double noise, LimitLevels& result) {
+void measure_vertices(const LimitSurface& limit, const LimitFaces& limits, const LevelOptions& options, double noise, LimitLevels& result) {
     const Scheme scheme = limit.scheme();
     const auto vertices = extraordinary_vertices(limit.cage(), scheme);
     const auto& methods = scheme == Scheme::loop ? triangle_methods() : quad_methods();
@@ -232,10 +200,10 @@ LimitLevels measure_levels(const LimitSurface& limit, const LevelOptions& option
     if (limit.scheme() == Scheme::loop) measure_loop(limit, std::min(options.levels, 6), options.samples, kNoise * size, result);
     if (limit.faces() == regular(limit)) return result;
     try {
-        const Limits limits(limit.cage(), limit.scheme());
-        result.masks_gap = limits.masks_gap;
-        result.subcells = measure_subcells(limit, limits.patches);
-        measure_vertices(limit, limits, options, kNoise * size, result);
+        result.faces = std::make_shared<const LimitFaces>(limit.cage(), limit.scheme());
+        result.masks_gap = result.faces->masks_gap;
+        result.subcells = measure_subcells(limit, result.faces->patches);
+        measure_vertices(limit, *result.faces, options, kNoise * size, result);
     } catch (const Error& e) {
         result.refused = e.what();
     }

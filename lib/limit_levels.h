@@ -7,11 +7,13 @@
 //
 // Source: formula sheet F, F2 (P2, P4), B "observed approximation orders".
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "limit.h"
+#include "limit_faces.h"
 #include "limit_subcells.h"
 
 namespace isoparm {
@@ -43,7 +45,8 @@ struct LoopLevel {
 };
 
 struct LimitLevels {
-    std::string refused;  // why nothing was measured around vertices: make_subdivision()'s words
+    std::shared_ptr<const LimitFaces> faces;  // what was measured; none where every face is regular
+    std::string refused;                      // why nothing was measured around vertices: make_subdivision()'s words
     std::vector<LimitValence> valences;
     std::vector<LimitLevel> by_level;  // by valence, method, level
     std::vector<char> compared;        // of each face of the cage: has it a cell at an extraordinary vertex?

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "commands/limit_picture.h"
 #include "commands/limit_report.h"
 #include "commands/limit_scene.h"
 #include "commands/options.h"
@@ -37,7 +38,8 @@ CAGE.obj       v and f lines, and OpenSubdiv's tags (indices from 0): t crease 2
                (N: 0 none, 1 edge and corner, 2 edge only; 1 where the file does not say)
 --scheme S     catmull-clark (default), loop, or bilinear
 --json         the report as JSON on standard output
--o DIR         the report as JSON in DIR/limit.json as well
+-o DIR         the report as DIR/limit.json as well, and DIR/limit.png: the surface coloured by how far the composite of
+               one patch a face is from it
 --samples N    samples each way over a face and along an edge, 2 to 1025 (default 17); over a cell at a vertex
                65 at most (default 9)
 --levels K     the last level around extraordinary vertices, 0 to 12 (default 6)
@@ -53,6 +55,7 @@ void write_report(const std::string& folder, const LimitResult& result) {
     std::filesystem::create_directories(folder, failed);
     if (failed) throw Error(ErrorKind::io, folder + ": cannot make this folder: " + failed.message());
     write_atomically((std::filesystem::path(folder) / "limit.json").string(), [&](std::ostream& out) { out << limit_json(result); });
+    write_limit_picture((std::filesystem::path(folder) / "limit.png").string(), result);
 }
 
 LimitResult measure(const std::string& path, Scheme scheme, const Options& options) {
