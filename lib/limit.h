@@ -67,6 +67,8 @@ struct LimitSample {
     double u, v;
     Point p, normal;  // unit, by OpenSubdiv's tangents; NaN at creases and sharp corners, which have several, and where these are not the
                       // limit's: on boundaries of Catmull-Clark cages but for two faces at the vertex
+    Point next, previous;  // directions, of some length, of the limit along the two sides of the refined face that begin at the vertex, by the same tangents; NaN
+                           // but at smooth vertices inside
     bool exact;  // OpenSubdiv's mask is that of the limit: not so at the end of a crease, at valence 2, and where something semi-sharp is left
 };
 /// Throws as LimitSurface does.

@@ -1,6 +1,8 @@
 #include <opensubdiv/far/primvarRefiner.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "limit_refiner.h"
 
@@ -73,6 +75,24 @@ bool has_normal(const Far::TopologyLevel& level, int v, bool loop) {
     return true;
 }
 
+/// The limit's direction along each edge of a smooth vertex inside, in the order of the edges. OpenSubdiv's first tangent goes along edge 0; the
+/// second along edge 1 (Catmull-Clark), or at right angles to the first in the eigenvectors' plane (Loop).
+std::vector<Point> directions(const Far::TopologyLevel& level, int v, const Point& along, const Point& across, bool loop) {
+    const int n = level.GetVertexEdges(v).size();
+    if (n < 3 || level.IsVertexBoundary(v) || level.IsVertexNonManifold(v) || level.GetVertexSharpness(v) > 0) return {};
+    for (const int e : level.GetVertexEdges(v))
+        if (level.GetEdgeSharpness(e) > 0) return {};
+    const double turn = 2 * std::numbers::pi / n;
+    const Point side = loop ? across : (across - std::cos(turn) * along) / std::sin(turn);
+    std::vector<Point> all;
+    for (int i = 0; i < n; ++i) all.push_back(std::cos(i * turn) * along + std::sin(i * turn) * side);
+    return all;
+}
+Point direction(const Far::TopologyLevel& level, int v, int edge, const std::vector<Point>& all) {
+    const auto edges = level.GetVertexEdges(v);
+    return all.empty() ? Point(NAN, NAN, NAN) : all[static_cast<std::size_t>(std::find(edges.begin(), edges.end(), edge) - edges.begin())];
+}
+
 }  // namespace
 
 std::vector<LimitSample> limit_samples(const Cage& cage, Scheme scheme, int levels) {
@@ -102,12 +122,19 @@ std::vector<LimitSample> limit_samples(const Cage& cage, Scheme scheme, int leve
     std::vector<Primvar> limit(last.GetNumVertices()), along = limit, across = limit;
     primvars.Limit(points, limit, along, across);
     std::vector<LimitSample> samples;
+    std::vector<std::vector<Point>> ways(last.GetNumVertices());
+    for (int v = 0; v < last.GetNumVertices() && scheme != Scheme::bilinear; ++v) ways[v] = directions(last, v, along[v].p, across[v].p, loop);
     for (int f = 0; f < last.GetNumFaces(); ++f) {
         if (last.IsFaceHole(f)) continue;
-        const auto vertices = last.GetFaceVertices(f);
-        for (int k = 0; k < vertices.size(); ++k) {
+        const auto vertices = last.GetFaceVertices(f), edges = last.GetFaceEdges(f);
+        const int n = vertices.size();
+        for (int k = 0; k < n; ++k) {
             const int v = vertices[k];
-            samples.push_back({places[f].face, places[f].corner, places[f].uv[k].x, places[f].uv[k].y, limit[v].p, has_normal(last, v, loop) ? normalized(cross(along[v].p, across[v].p)) : Point(NAN, NAN, NAN), scheme == Scheme::bilinear || mask_is_exact(last, v)});
+            LimitSample s{places[f].face, places[f].corner, places[f].uv[k].x, places[f].uv[k].y, limit[v].p, Point(NAN, NAN, NAN), {}, {}, false};
+            if (has_normal(last, v, loop)) s.normal = normalized(cross(along[v].p, across[v].p));
+            s.next = direction(last, v, edges[k], ways[v]), s.previous = direction(last, v, edges[(k + n - 1) % n], ways[v]);
+            s.exact = scheme == Scheme::bilinear || mask_is_exact(last, v);
+            samples.push_back(s);
         }
     }
     return samples;
