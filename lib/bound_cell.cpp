@@ -18,7 +18,7 @@ constexpr double kRounding = 64 * 0x1p-53;
 /// are finer cells, the second when there are none.
 constexpr double kClear = 0.4, kVague = 0.8;
 /// Cells this much wider than a triangle are not tried.
-constexpr double kLarge = 10;
+constexpr double kLarge = 3;
 /// Pieces of the triangle's own box are tried where a bound is within this factor of the tolerance.
 constexpr double kNear = 2;
 
@@ -126,7 +126,7 @@ SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box, int par
     bounded = all < 1e290;
 }
 
-TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& triangle, Measure measure, bool least) {
+TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& triangle, Measure measure, bool least, bool turns) {
     TriangleBound result;
     if (!s.bounded) return result;
     const auto& p = triangle.uv;
@@ -194,7 +194,7 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     const double s_ = triangle.slack;
     result.unit = n;
     result.tilt = safe((8.1 * s_ * (longest + s_) + 33 * 0x1p-53 * longest * longest) / twice_area + 4 * 0x1p-53);
-    if (!least) result.turn = turn_of(n, x, b, q, side, s_, result.worst_turn);
+    if (turns && !least) result.turn = turn_of(n, x, b, q, side, s_, result.worst_turn);
     std::array<double, 4> along;
     for (int k = 0; k < 4; ++k) along[k] = std::max(0.0, std::fabs(dot(n, s.t[k])) + (least ? -s.t_rad[k] : s.t_rad[k]) + 4 * 0x1p-53 * s.t_size[k]);
     const std::array<double, 3> qn = stray(along), bn{dot(n, b[0]), dot(n, b[1]), dot(n, b[2])};
@@ -254,8 +254,11 @@ const BoundCell* BoundCell::child(const Patch& patch, const Box& of) const {
     return expected;  // another thread was faster, with the same numbers
 }
 
-TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure, double turn) {
+TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure, double turn, bool decide) {
     const Box box = box_of(triangle.uv);
+    const bool turns = turn != TriangleBound::unasked;
+    const auto by = [&](const SecondDerivatives& model, bool least = false) { return bound_triangle(model, triangle, measure, least, turns); };
+    const auto passes = [&](const TriangleBound& b) { return b.own(measure) <= tolerance && (!turns || b.turn <= turn); };
     const auto width = [](const Interval& x) { return x.hi - x.lo; };
     while (width(cell->box_.u) > kLarge * width(box.u) && width(cell->box_.v) > kLarge * width(box.v)) {
         const BoundCell* finer = cell->child(patch, box);
@@ -265,24 +268,25 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
     for (;;) {
         double help = 1;  // where the cell tells nothing
         if (cell->model_.bounded) {
-            const TriangleBound b = bound_triangle(cell->model_, triangle, measure);
-            if (b.own(measure) <= tolerance && b.turn <= turn) return b;
+            const TriangleBound b = by(cell->model_);
+            if (passes(b)) return b;
             // A finer cell helps if the bound may be below the tolerance, and to tell the edges apart.
-            const double least = bound_triangle(cell->model_, triangle, measure, true).own(measure);
+            const double least = by(cell->model_, true).own(measure);
+            if (decide && least > tolerance) return b;
             help = least > tolerance ? 1 - least / b.own(measure) : 1;
             if (help < kClear) return b;
         }
         const BoundCell* finer = cell->child(patch, box);
-        if (!finer && help < kVague) return bound_triangle(cell->model_, triangle, measure);
+        if (!finer && help < kVague) return by(cell->model_);
         if (!finer) break;
         cell = finer;
     }
     // The sharpest cell is the triangle's own box. Where second derivatives change too much, first ones may tell more.
     const SecondDerivatives model(patch, box);
-    TriangleBound sharpest = bound_triangle(model, triangle, measure);
-    if (sharpest.own(measure) <= tolerance || bound_triangle(model, triangle, measure, true).own(measure) > (1 - kClear) * sharpest.own(measure)) return sharpest;
+    TriangleBound sharpest = by(model);
+    if (sharpest.own(measure) <= tolerance || by(model, true).own(measure) > (decide ? tolerance : (1 - kClear) * sharpest.own(measure))) return sharpest;
     if (sharpest.own(measure) <= kNear * tolerance) {
-        const TriangleBound finer = bound_triangle(SecondDerivatives(patch, box, SecondDerivatives::pieces), triangle, measure);
+        const TriangleBound finer = by(SecondDerivatives(patch, box, SecondDerivatives::pieces));
         if (finer.own(measure) < sharpest.own(measure)) sharpest = finer;
         if (sharpest.own(measure) <= tolerance) return sharpest;
     }

@@ -39,9 +39,11 @@ public:
 
     /// Bounds a triangle of this cell. `cell` is the cell in the tree to begin with; it becomes the one that was used,
     /// which serves the triangle's parts too. Finer cells are made only where they may decide whether `tolerance` is kept.
+    /// `turn`: the same for turn, none where it is to be bounded but may be anything, or unasked.
+    /// `decide`: a bound above the tolerance may be any; it is not asked then why, or which edge is the worst.
     /// Safe to call from several threads; the result does not depend on which cells exist.
     static TriangleBound bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure,
-                               double turn = TriangleBound::none);
+                               double turn = TriangleBound::none, bool decide = false);
 
     const SecondDerivatives& model() const { return model_; }
 
@@ -55,7 +57,8 @@ private:
     mutable std::array<std::atomic<BoundCell*>, 4> children_{};
 };
 
-/// The bound of a triangle in the box of the model. `least`: what no finer cell could go below, as far as the model tells; no bound.
-TriangleBound bound_triangle(const SecondDerivatives& model, const CornerData& triangle, Measure measure, bool least = false);
+/// The bound of a triangle in the box of the model, its turn left out where `turns` is false. `least`: what no finer cell could go below,
+/// as far as the model tells; no bound.
+TriangleBound bound_triangle(const SecondDerivatives& model, const CornerData& triangle, Measure measure, bool least = false, bool turns = true);
 
 }  // namespace isoparm

@@ -9,7 +9,7 @@ bool FreePatch::prove(std::uint32_t i) {
     FreeTriangle& t = triangles_[i];
     const Places p = places(t.corner);
     const BoundCell* cell = t.root;
-    t.proof = BoundCell::bound(patch_, cell, p.corners(), tolerance_ - p.slack, measure_);
+    t.proof = BoundCell::bound(patch_, cell, p.corners(), tolerance_ - p.slack, measure_, TriangleBound::unasked);
     if (cell->model().bounded) t.cell = cell;
     t.proved = true, t.sharp = false;
     return t.proof.own(measure_) <= tolerance_;

@@ -68,11 +68,11 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
     });
 }
 
-void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t) const {
+void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide) const {
     CornerData data;
     for (int k = 0; k < 3; ++k) data.uv[k] = mesh.uv[t.corner[k]], data.points[k] = positions_[mesh.vertex[t.corner[k]]];
     data.slack = mesh.slack_of(t);
-    t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_, turn_);
+    t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_, turn_, decide);
 }
 
 bool Refinement::bound_and_mark() {
@@ -115,7 +115,7 @@ bool Refinement::bound_and_mark() {
 }
 
 bool Refinement::turns_little(const PatchMesh& mesh, const PatchTriangle& t) const {
-    if (t.proof.turn <= turn_ || !std::isfinite(turn_) || mesh.left_out(t)) return true;
+    if (turn_ == TriangleBound::unasked || t.proof.turn <= turn_ || !std::isfinite(turn_) || mesh.left_out(t)) return true;
     const auto [a, b, c] = mesh.vertices(t);
     const auto near = [&](std::uint32_t p, std::uint32_t q) { return length(positions_[p] - positions_[q]) <= tolerance_; };
     return !std::isfinite(t.proof.turn) && near(a, b) && near(b, c) && near(c, a);
