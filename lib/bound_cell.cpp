@@ -22,10 +22,6 @@ constexpr double kLarge = 3;
 /// Pieces of the triangle's own box are tried where a bound is within this factor of the tolerance.
 constexpr double kNear = 2;
 
-Point middle(const Vec3<Interval>& x) { return {mid(x.x), mid(x.y), mid(x.z)}; }
-double radius(const Vec3<Interval>& x) { return rounding::length_up(rad(x.x), rad(x.y), rad(x.z)); }
-double size_of(const Point& x) { return rounding::length_up(std::fabs(x.x), std::fabs(x.y), std::fabs(x.z)); }
-bool bounded(const Vec3<Interval>& x) { return x.x.bounded() && x.y.bounded() && x.z.bounded(); }
 
 /// Right-handed orthonormal frame (up to 1e-15) whose first vector is n, or the axes where n is no unit vector.
 std::array<Point, 3> frame_of(const Point& n) {
@@ -69,62 +65,7 @@ Box half_of(const Box& box, int k) {
 
 bool inside(const Box& box, const Box& of) { return box.u.lo >= of.u.lo && box.u.hi <= of.u.hi && box.v.lo >= of.v.lo && box.v.hi <= of.v.hi; }
 
-/// The ranges over a box become the hulls of those over pieces of it, pieces outside the domain left out: intervals that overestimate
-/// grow with the box.
-void enclose_pieces(Enclosure& e, const Patch& patch, const Box& box, int parts) {
-    const auto cut = [parts](const Interval& x, int i) {
-        const auto at = [&](int k) { return k == 0 ? x.lo : k == parts ? x.hi : x.lo + (x.hi - x.lo) * k / parts; };
-        return Interval(at(i), at(i + 1));
-    };
-    Vec3<JetUV<Interval, 3>> hull_of_all;
-    bool first = true;
-    for (int i = 0; i < parts; ++i)
-        for (int j = 0; j < parts; ++j) {
-            const Box piece{cut(box.u, i), cut(box.v, j)};
-            if (patch.domain() == Domain::triangle && piece.u.lo + piece.v.lo > 1 + 1e-15) continue;
-            const auto over = patch.enclose(piece).over;
-            for (std::size_t k = 0; k < std::size(over.x.c); ++k)
-                for (const auto axis : {&Vec3<JetUV<Interval, 3>>::x, &Vec3<JetUV<Interval, 3>>::y, &Vec3<JetUV<Interval, 3>>::z}) {
-                    Interval& all = (hull_of_all.*axis).c[k];
-                    all = first ? (over.*axis).c[k] : hull(all, (over.*axis).c[k]);
-                }
-            first = false;
-        }
-    if (!first) e.over = hull_of_all;
-}
-
 }  // namespace
-
-SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box, int parts) {
-    Enclosure e = patch.enclose(box);
-    if (parts > 1) enclose_pieces(e, patch, box, parts);
-    u = e.u, v = e.v;
-    const double half[2] = {rounding::up(std::max(box.u.hi - u, u - box.u.lo)), rounding::up(std::max(box.v.hi - v, v - box.v.lo))};
-    const auto centre = [&](int i, int j, double scale) {
-        const int k = JetUV<Interval, 2>::index(i, j);
-        const Interval s(scale);
-        return Vec3<Interval>{s * e.centre.x.c[k], s * e.centre.y.c[k], s * e.centre.z.c[k]};
-    };
-    const auto over = [&](int i, int j, double scale) {
-        const int k = JetUV<Interval, 3>::index(i, j);
-        const Interval s(scale);
-        return Vec3<Interval>{s * e.over.x.c[k], s * e.over.y.c[k], s * e.over.z.c[k]};
-    };
-    const Vec3<Interval> second[3] = {centre(2, 0, 2), centre(1, 1, 1), centre(0, 2, 2)};
-    const Vec3<Interval> third[4] = {over(3, 0, 6), over(2, 1, 2), over(1, 2, 2), over(0, 3, 6)};
-    for (int k = 0; k < 4; ++k) {
-        if (!isoparm::bounded(third[k])) return;
-        t[k] = middle(third[k]), t_rad[k] = radius(third[k]);
-        t_size[k] = safe(size_of(t[k]) + t_rad[k]);
-    }
-    for (int k = 0; k < 3; ++k) {
-        if (!isoparm::bounded(second[k])) return;
-        h[k] = middle(second[k]), h_rad[k] = radius(second[k]);
-        h_size[k] = safe(size_of(h[k]) + t_size[k] * half[0] + t_size[k + 1] * half[1]);
-    }
-    const double all = h_size[0] + h_size[1] + h_size[2] + t_size[0] + t_size[1] + t_size[2] + t_size[3] + h_rad[0] + h_rad[1] + h_rad[2];
-    bounded = all < 1e290;
-}
 
 TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& triangle, Measure measure, bool least, bool turns) {
     TriangleBound result;
@@ -233,8 +174,13 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
     return result;
 }
 
-BoundCell::BoundCell(const Patch& patch, const Box& box) : BoundCell(patch, box, box) {}
-BoundCell::BoundCell(const Patch& patch, const Box& box, const Box& reach) : box_(box), reach_(reach), model_(patch, reach) {}
+BoundCell::BoundCell(const Patch& patch, const Box& box) : BoundCell(patch, box, box, std::make_shared<PolynomialCell>(patch, box)) {}
+BoundCell::BoundCell(const Patch& patch, const Box& box, const Box& reach, std::shared_ptr<const PolynomialCell> exact)
+    : box_(box), reach_(reach), exact_(std::move(exact)), model_(model_of(patch, reach)) {}
+SecondDerivatives BoundCell::model_of(const Patch& patch, const Box& box, int parts) const {
+    if (exact_->exists()) return parts > 1 ? (*exact_)(box, parts) : (*exact_)(box);
+    return SecondDerivatives(patch, box, parts);
+}
 BoundCell::~BoundCell() {
     for (auto& c : children_) delete c.load();
 }
@@ -248,7 +194,7 @@ const BoundCell* BoundCell::child(const Patch& patch, const Box& of) const {
     const Box reach{{std::max(reach_.u.lo, half.u.lo - gu), std::min(reach_.u.hi, half.u.hi + gu)}, {std::max(reach_.v.lo, half.v.lo - gv), std::min(reach_.v.hi, half.v.hi + gv)}};
     if (!inside(of, reach)) return nullptr;
     if (patch.domain() == Domain::triangle && mid(reach.u) + mid(reach.v) > 1) return nullptr;  // its centre has to be a point of the domain
-    auto fresh = std::unique_ptr<BoundCell>(new BoundCell(patch, half, reach));
+    auto fresh = std::unique_ptr<BoundCell>(new BoundCell(patch, half, reach, exact_));
     BoundCell* expected = nullptr;
     if (children_[k].compare_exchange_strong(expected, fresh.get(), std::memory_order_acq_rel)) return fresh.release();
     return expected;  // another thread was faster, with the same numbers
@@ -282,14 +228,15 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
         cell = finer;
     }
     // The sharpest cell is the triangle's own box. Where second derivatives change too much, first ones may tell more.
-    const SecondDerivatives model(patch, box);
+    const SecondDerivatives model = cell->model_of(patch, box);
     TriangleBound sharpest = by(model);
     if (sharpest.own(measure) <= tolerance || by(model, true).own(measure) > (decide ? tolerance : (1 - kClear) * sharpest.own(measure))) return sharpest;
     if (sharpest.own(measure) <= kNear * tolerance) {
-        const TriangleBound finer = by(SecondDerivatives(patch, box, SecondDerivatives::pieces));
+        const TriangleBound finer = by(cell->model_of(patch, box, SecondDerivatives::pieces));
         if (finer.own(measure) < sharpest.own(measure)) sharpest = finer;
         if (sharpest.own(measure) <= tolerance) return sharpest;
     }
+    if (cell->exact_->exists() && (sharpest.quiet || sharpest.own(measure) > kNear * tolerance)) return sharpest;  // first derivatives would not tell more
     const TriangleBound rough = bound_triangle(patch, triangle.uv, triangle.points);
     if (rough.parametric < sharpest.parametric) {
         sharpest.parametric = rough.parametric;

@@ -8,26 +8,9 @@
 #include <memory>
 
 #include "bound.h"
+#include "second_derivatives.h"
 
 namespace isoparm {
-
-/// Taylor model of the second derivatives: H(q) = H(centre) + T (q - centre), T anywhere in mid T +- rad T.
-struct SecondDerivatives {
-    double u = 0, v = 0;                   // the centre
-    std::array<Point, 3> h{};              // S_uu, S_uv, S_vv there
-    std::array<double, 3> h_rad{};         // at least the length of what they may be off by
-    std::array<Point, 4> t{};              // S_uuu, S_uuv, S_uvv, S_vvv: middles of their ranges
-    std::array<double, 4> t_rad{};         // at least the length of what they may be off by, anywhere in the cell
-    std::array<double, 4> t_size{};        // at least their length
-    std::array<double, 3> h_size{};        // at least |h| + |t| times the half-widths: what rounding is relative to
-    bool bounded = false;                  // false: some of that has no bound, nothing else is set
-
-    static constexpr int pieces = 3;  // along each direction, of the sharpest: more gain little
-
-    SecondDerivatives() = default;
-    /// Third derivatives are enclosed over parts x parts pieces of the box, which sharpens what intervals overestimate.
-    SecondDerivatives(const Patch& patch, const Box& box, int parts = 1);
-};
 
 class BoundCell {
 public:
@@ -48,11 +31,13 @@ public:
     const SecondDerivatives& model() const { return model_; }
 
 private:
-    BoundCell(const Patch& patch, const Box& box, const Box& reach);
+    BoundCell(const Patch& patch, const Box& box, const Box& reach, std::shared_ptr<const PolynomialCell> exact);
     const BoundCell* child(const Patch& patch, const Box& of) const;
+    SecondDerivatives model_of(const Patch& patch, const Box& box, int parts = 1) const;
 
     Box box_;    // children halve it
     Box reach_;  // a margin wider: triangles that lie in here are served
+    std::shared_ptr<const PolynomialCell> exact_;
     SecondDerivatives model_;
     mutable std::array<std::atomic<BoundCell*>, 4> children_{};
 };
