@@ -78,7 +78,8 @@ struct Plan {
     std::array<std::array<double, kSamples>, kSamples> density{};  // [i][j]: vertices per width, along line j
 };
 
-Plan plan(const Oriented& bends, const std::vector<double>& dv, int n, double tolerance, Measure measure) {
+/// Given up, with more than `most` triangles, as soon as there are more.
+Plan plan(const Oriented& bends, const std::vector<double>& dv, int n, double tolerance, Measure measure, double most) {
     Plan p;
     p.n = n, p.triangles = 0;
     for (int i = 0; i < kSamples; ++i)
@@ -95,6 +96,7 @@ Plan plan(const Oriented& bends, const std::vector<double>& dv, int n, double to
             }
             p.density[i][j] = 1 / low;
             p.triangles += 2 * n * dv[j] / low * outcome(target, tolerance) / (kSamples * kSamples);
+            if (p.triangles > most) return p;
         }
     return p;
 }
@@ -187,7 +189,7 @@ DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure meas
         const double usual = std::sqrt(std::sqrt(squares) / kSamples / (6 * tolerance));
         if (!(usual * usual <= most)) return DiceGrid::single(box);
         for (double n = std::max(1.0, usual / 2); n <= 2 + 3 * usual; n = std::max(n + 1, n * kStep)) {
-            const Plan p = plan(turned, dv, int(n), tolerance, measure);
+            const Plan p = plan(turned, dv, int(n), tolerance, measure, best.triangles);
             if (p.triangles < best.triangles * (1 - 1e-9)) best = p, best_density = dv, best_columns = columns;
         }
     }
