@@ -18,7 +18,7 @@ constexpr double kRounding = 64 * 0x1p-53;
 /// are finer cells, the second when there are none.
 constexpr double kClear = 0.4, kVague = 0.8;
 /// Cells this much wider than a triangle are not tried.
-constexpr double kLarge = 3;
+constexpr double kLarge = 3, kLargePolynomial = 2;  // the second where cells cost little
 /// Pieces of the triangle's own box are tried where a bound is within this factor of the tolerance.
 constexpr double kNear = 2;
 
@@ -276,7 +276,8 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
     const auto least_of = [&](const Shape& shape, const TriangleBound& b) { return b.quiet ? shape.least_normal() : shape.bound(measure, true, false, true).own(measure); };
     const auto passes = [&](const TriangleBound& b) { return b.own(measure) <= tolerance && (!turns || b.turn <= turn); };
     const auto width = [](const Interval& x) { return x.hi - x.lo; };
-    while (width(cell->box_.u) > kLarge * width(box.u) && width(cell->box_.v) > kLarge * width(box.v)) {
+    const double large = cell->exact_->exists() ? kLargePolynomial : kLarge;
+    while (width(cell->box_.u) > large * width(box.u) && width(cell->box_.v) > large * width(box.v)) {
         const BoundCell* finer = cell->child(patch, box);
         if (!finer) break;
         cell = finer;
@@ -285,6 +286,7 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
         double help = 1;  // where the cell tells nothing
         if (cell->model_.bounded) {
             const Shape shape(cell->model_, triangle);
+            if (decide && measure == Measure::geometric && shape.least_normal() > tolerance) return {};
             const TriangleBound b = shape.bound(measure, false, turns, true);
             if (passes(b)) return b;
             // A finer cell helps if the bound may be below the tolerance, and to tell the edges apart.

@@ -23,12 +23,13 @@ public:
     /// Bounds a triangle of this cell. `cell` is the cell in the tree to begin with; it becomes the one that was used,
     /// which serves the triangle's parts too. Finer cells are made only where they may decide whether `tolerance` is kept.
     /// `turn`: the same for turn, none where it is to be bounded but may be anything, or unasked.
-    /// `decide`: a bound above the tolerance may be any; it is not asked then why, or which edge is the worst.
+    /// `decide`: a bound above the tolerance may be any, or none; it is not asked then why, or which edge is the worst.
     /// Safe to call from several threads; the result does not depend on which cells exist.
     static TriangleBound bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure,
                                double turn = TriangleBound::none, bool decide = false);
 
     const SecondDerivatives& model() const { return model_; }
+    const PolynomialCell& polynomial() const { return *exact_; }
 
 private:
     BoundCell(const Patch& patch, const Box& box, const Box& reach, std::shared_ptr<const PolynomialCell> exact);

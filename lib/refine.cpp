@@ -25,6 +25,9 @@ template <class Count, class F> void for_all(std::size_t members, Count count, F
     });
 }
 
+/// Slack below this part of the tolerance need not be sharp.
+constexpr double kFew = 1e-8;
+
 /// A name for the mesh edge that an edge of a patch is, the same whichever patch and direction it is seen from.
 std::uint64_t mesh_edge(const PatchMesh& mesh, const PatchEdge& e) {
     const auto [a, b] = std::minmax(mesh.vertex[e.a], mesh.vertex[e.b]);
@@ -63,7 +66,13 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
     mesh.slack.resize(mesh.uv.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(first, mesh.uv.size(), 64), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            mesh.slack[i] = slack_of(surface_[member].patch, mesh.uv[i], positions_[mesh.vertex[i]]);
+            const Vec2& p = mesh.uv[i];
+            const Point& x = positions_[mesh.vertex[i]];
+            const auto on = [](double t, const std::vector<double>& breaks) { return std::binary_search(breaks.begin(), breaks.end(), t); };
+            const auto c = std::uint32_t(i);
+            const PolynomialCell* cell = on(p.x, mesh.breaks_u) || on(p.y, mesh.breaks_v) ? nullptr : &mesh.root_of({c, c, c})->polynomial();
+            const double quick = cell && cell->exists() ? cell->slack(p, x) : tolerance_;
+            mesh.slack[i] = quick <= kFew * tolerance_ ? quick : slack_of(surface_[member].patch, p, x);
         }
     });
 }

@@ -126,29 +126,56 @@ void PolynomialCell::bound_errors(const std::vector<Polynomial>& form, double hu
         }
 }
 
-/// Taylor coefficients about (u_ + du, v_ + dv).
-void PolynomialCell::recentre(double du, double dv, Lanes* a) const {
-    std::copy(c_.begin(), c_.end(), a);
-    const int stride = q_ + 1;
-    const auto step = [](Lanes& x, const Lanes& y, double d) {
-        for (std::size_t lane = 0; lane < 4; ++lane) x[lane] += y[lane] * d;
-    };
-    for (int k = 0; k < p_; ++k)
-        for (int i = p_ - 1; i >= k; --i)
-            for (int j = 0; j <= q_; ++j) step(a[i * stride + j], a[(i + 1) * stride + j], du);
-    for (int i = 0; i <= p_; ++i)
-        for (int k = 0; k < q_; ++k)
-            for (int j = q_ - 1; j >= k; --j) step(a[i * stride + j], a[i * stride + j + 1], dv);
+namespace {
+
+using Lanes = std::array<double, 4>;
+
+/// x + y d
+void step(Lanes& x, const Lanes& y, double d) {
+    for (std::size_t lane = 0; lane < 4; ++lane) x[lane] += y[lane] * d;
 }
 
-SecondDerivatives PolynomialCell::operator()(const Box& box) const {
+constexpr double kBinomial[6][6] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}, {1, 4, 6, 4, 1}, {1, 5, 10, 10, 5, 1}};
+
+}  // namespace
+
+double PolynomialCell::slack(const Vec2& p, const Point& x) const {
+    const double du = p.x - u_, dv = p.y - v_;
+    Lanes sum{};
+    for (int i = p_; i >= 0; --i) {
+        const Lanes* row = &c_[std::size_t(i * (q_ + 1))];
+        Lanes at = row[q_];
+        for (int j = q_ - 1; j >= 0; --j) {
+            Lanes next = row[j];
+            step(next, at, dv);
+            at = next;
+        }
+        step(at, sum, du);
+        sum = at;
+    }
+    const auto off = [](double a, double b) { return rounding::up(std::fabs(a - b)); };
+    return rounding::up(rounding::length_up(off(sum[0], x.x), off(sum[1], x.y), off(sum[2], x.z)) + error_[0]);
+}
+
+SecondDerivatives PolynomialCell::operator()(const Box& box) const { return p_ == 3 && q_ == 3 ? over<3, 3>(box) : over<-1, -1>(box); }
+
+template <int P, int Q> SecondDerivatives PolynomialCell::over(const Box& box) const {
     constexpr int order = 4, size = max_degree + 1;
+    const int p = P < 0 ? p_ : P, q = Q < 0 ? q_ : Q, stride = q + 1;
     SecondDerivatives m;
     m.u = mid(box.u), m.v = mid(box.v);
     const double ru = rounding::up(std::max(box.u.hi - m.u, m.u - box.u.lo)), rv = rounding::up(std::max(box.v.hi - m.v, m.v - box.v.lo));
     Lanes a[size * size];
-    recentre(m.u - u_, m.v - v_, a);
-    const auto coefficient = [&](int i, int j) -> Lanes { return i <= p_ && j <= q_ ? a[i * (q_ + 1) + j] : Lanes{}; };
+    std::copy_n(c_.begin(), (p + 1) * stride, a);
+    const double du = m.u - u_, dv = m.v - v_;  // to Taylor coefficients about (m.u, m.v)
+    for (int k = 0; k < p; ++k)
+        for (int i = p - 1; i >= k; --i)
+            for (int j = 0; j <= q; ++j) step(a[i * stride + j], a[(i + 1) * stride + j], du);
+    for (int i = 0; i <= p; ++i)
+        for (int k = 0; k < q; ++k)
+            for (int j = q - 1; j >= k; --j) step(a[i * stride + j], a[i * stride + j + 1], dv);
+    const auto coefficient = [&](int i, int j) -> Lanes { return i <= p && j <= q ? a[i * stride + j] : Lanes{}; };
+    const auto error = [&](int i, int j) { return i <= p && j <= q ? error_[std::size_t(i * stride + j)] : 0; };
     const auto point = [](const Lanes& x, double scale) { return Point{scale * x[0], scale * x[1], scale * x[2]}; };
     for (int k = 0; k < 3; ++k) {
         const double scale = k == 1 ? 1 : 2;
@@ -163,10 +190,10 @@ SecondDerivatives PolynomialCell::operator()(const Box& box) const {
         const double scale = factorial[i] * factorial[j];
         Lanes middle = coefficient(i, j), off{};
         double rest = error(i, j);
-        for (int s = i; s <= p_; ++s)
-            for (int t = s == i ? j + 1 : j; t <= q_; ++t) {
-                const Lanes& c = a[s * (q_ + 1) + t];
-                const double weight = std::max(binomial(s, i) * binomial(t, j) * power_u[s - i] * power_v[t - j], rounding::kTiny);
+        for (int s = i; s <= p; ++s)
+            for (int t = s == i ? j + 1 : j; t <= q; ++t) {
+                const Lanes& c = a[s * stride + t];
+                const double weight = std::max(kBinomial[s][i] * kBinomial[t][j] * power_u[s - i] * power_v[t - j], rounding::kTiny);
                 const bool one_sided = (s - i) % 2 == 0 && (t - j) % 2 == 0;
                 const double half = one_sided ? 0.5 * weight : weight;
                 for (std::size_t lane = 0; lane < 4; ++lane) {

@@ -43,18 +43,20 @@ public:
     SecondDerivatives operator()(const Box& box) const;
     /// Third derivatives enclosed over parts x parts pieces.
     SecondDerivatives operator()(const Box& box, int parts) const;
+    /// At least the distance of x from the surface at p, a point of the cell.
+    double slack(const Vec2& p, const Point& x) const;
 
 private:
     using Lanes = std::array<double, 4>;  // x, y, z of a coefficient, and nothing
 
     void bound_errors(const std::vector<Polynomial>& form, double hu, double hv);
-    void recentre(double du, double dv, Lanes* a) const;
-    double error(int i, int j) const { return i <= p_ && j <= q_ ? error_[std::size_t(i * (q_ + 1) + j)] : 0; }
+    /// With degrees P and Q known when this is compiled, or -1.
+    template <int P, int Q> SecondDerivatives over(const Box& box) const;
 
     int p_ = 0, q_ = 0;
     double u_ = 0, v_ = 0;       // the cell's middle
     std::vector<Lanes> c_;       // of (u - u_)^i (v - v_)^j at i (q + 1) + j
-    std::vector<double> error_;  // at least the length of what coefficients about any point of the cell, as recentre() has them, are off by
+    std::vector<double> error_;  // at least the length of what coefficients about any point of the cell, are off by in plain doubles
 };
 
 }  // namespace isoparm
