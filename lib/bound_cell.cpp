@@ -244,10 +244,20 @@ TriangleBound bound_triangle(const SecondDerivatives& s, const CornerData& trian
 
 BoundCell::BoundCell(const Patch& patch, const Box& box) : BoundCell(patch, box, box, std::make_shared<PolynomialCell>(patch, box)) {}
 BoundCell::BoundCell(const Patch& patch, const Box& box, const Box& reach, std::shared_ptr<const PolynomialCell> exact)
-    : box_(box), reach_(reach), exact_(std::move(exact)), model_(model_of(patch, reach)) {}
+    : box_(box), reach_(reach), exact_(std::move(exact)), model_(exact_->exists() ? (*exact_)(reach) : SecondDerivatives(patch, reach)) {}
 SecondDerivatives BoundCell::model_of(const Patch& patch, const Box& box, int parts) const {
     if (exact_->exists()) return parts > 1 ? (*exact_)(box, parts) : (*exact_)(box);
-    return SecondDerivatives(patch, box, parts);
+    auto& last = last_[parts > 1];
+    const auto same = [](const Interval& a, const Interval& b) { return a.lo == b.lo && a.hi == b.hi; };
+    {
+        const std::lock_guard lock(last_guard_);
+        if (last && last->parts == parts && same(last->box.u, box.u) && same(last->box.v, box.v)) return last->model;
+    }
+    auto fresh = std::make_unique<const Last>(Last{box, parts, SecondDerivatives(patch, box, parts)});
+    const SecondDerivatives model = fresh->model;
+    const std::lock_guard lock(last_guard_);
+    last = std::move(fresh);
+    return model;
 }
 BoundCell::~BoundCell() {
     for (auto& c : children_) delete c.load();

@@ -6,6 +6,7 @@
 #pragma once
 #include <atomic>
 #include <memory>
+#include <mutex>
 
 #include "bound.h"
 #include "second_derivatives.h"
@@ -34,6 +35,7 @@ public:
 private:
     BoundCell(const Patch& patch, const Box& box, const Box& reach, std::shared_ptr<const PolynomialCell> exact);
     const BoundCell* child(const Patch& patch, const Box& of) const;
+    /// Of a box in the cell.
     SecondDerivatives model_of(const Patch& patch, const Box& box, int parts = 1) const;
 
     Box box_;    // children halve it
@@ -41,6 +43,14 @@ private:
     std::shared_ptr<const PolynomialCell> exact_;
     SecondDerivatives model_;
     mutable std::array<std::atomic<BoundCell*>, 4> children_{};
+    /// What model_of() was asked last, by whether in one piece: the two triangles of a quadrilateral mostly share their box.
+    struct Last {
+        Box box;
+        int parts = 0;
+        SecondDerivatives model;
+    };
+    mutable std::mutex last_guard_;
+    mutable std::array<std::unique_ptr<const Last>, 2> last_;
 };
 
 /// The bound of a triangle in the box of the model, its turn left out where `turns` is false. `least`: what no finer cell could go below,

@@ -67,6 +67,11 @@ struct Oriented {
 };
 
 double error_of(const Bend& b, double a, double c, Measure measure) {
+    if (measure == Measure::geometric) {  // along the normal alone
+        const double uu = a * a * b.uu.x, vv = c * c * b.vv.x, uv = 2 * a * c * b.uv.x, plus = uu + vv + uv, minus = uu + vv - uv;
+        const double diagonal = std::fabs(plus) < std::fabs(minus) ? plus : minus;
+        return 0.5 * std::max(simplex_maximum(uu, vv, diagonal), simplex_maximum(-uu, -vv, -diagonal));
+    }
     const Point uu = a * a * b.uu, vv = c * c * b.vv, uv = 2 * a * c * b.uv, plus = uu + vv + uv, minus = uu + vv - uv;
     return error_of(uu, vv, dot(plus, plus) < dot(minus, minus) ? plus : minus, measure);
 }
