@@ -29,6 +29,7 @@ struct CornerData {
 /// L is the linear interpolant of the exact S at the corners, d = S - L, n the unit normal of L.
 struct TriangleBound {
     static constexpr double none = std::numeric_limits<double>::infinity();
+    static constexpr double unasked = -1;  // as a limit of turn: it is not bounded at all
 
     double parametric = none;            // at least |d| everywhere; infinite when nothing could be proved
     double normal = none;                // at least |n.d| everywhere; infinite for triangles that are not quiet
@@ -36,7 +37,7 @@ struct TriangleBound {
     std::array<double, 3> across{};      // at least |(n x e_k).d| on edge k, e_k its direction
     Point unit;                          // n up to tilt
     double tilt = none;
-    double turn = none;                  // at least the tangent of the angle between unit and the normal of S, anywhere; geometric measure only
+    double turn = none;                  // at least the tangent of the angle between unit and the normal of S, anywhere; geometric measure only, where asked for
     bool quiet = false;                  // S bends so little that it lies over L as a graph, and lenses around its edges do not meet
     int worst_edge = 0;                  // edge (corner k, k+1) whose bisection gains most
     int worst_turn = 0;                  // the same for turn

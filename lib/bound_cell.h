@@ -6,28 +6,12 @@
 #pragma once
 #include <atomic>
 #include <memory>
+#include <mutex>
 
 #include "bound.h"
+#include "second_derivatives.h"
 
 namespace isoparm {
-
-/// Taylor model of the second derivatives: H(q) = H(centre) + T (q - centre), T anywhere in mid T +- rad T.
-struct SecondDerivatives {
-    double u = 0, v = 0;                   // the centre
-    std::array<Point, 3> h{};              // S_uu, S_uv, S_vv there
-    std::array<double, 3> h_rad{};         // at least the length of what they may be off by
-    std::array<Point, 4> t{};              // S_uuu, S_uuv, S_uvv, S_vvv: middles of their ranges
-    std::array<double, 4> t_rad{};         // at least the length of what they may be off by, anywhere in the cell
-    std::array<double, 4> t_size{};        // at least their length
-    std::array<double, 3> h_size{};        // at least |h| + |t| times the half-widths: what rounding is relative to
-    bool bounded = false;                  // false: some of that has no bound, nothing else is set
-
-    static constexpr int pieces = 3;  // along each direction, of the sharpest: more gain little
-
-    SecondDerivatives() = default;
-    /// Third derivatives are enclosed over parts x parts pieces of the box, which sharpens what intervals overestimate.
-    SecondDerivatives(const Patch& patch, const Box& box, int parts = 1);
-};
 
 class BoundCell {
 public:
@@ -39,23 +23,38 @@ public:
 
     /// Bounds a triangle of this cell. `cell` is the cell in the tree to begin with; it becomes the one that was used,
     /// which serves the triangle's parts too. Finer cells are made only where they may decide whether `tolerance` is kept.
+    /// `turn`: the same for turn, none where it is to be bounded but may be anything, or unasked.
+    /// `decide`: a bound above the tolerance may be any, or none; it is not asked then why, or which edge is the worst.
     /// Safe to call from several threads; the result does not depend on which cells exist.
     static TriangleBound bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure,
-                               double turn = TriangleBound::none);
+                               double turn = TriangleBound::none, bool decide = false);
 
     const SecondDerivatives& model() const { return model_; }
+    const PolynomialCell& polynomial() const { return *exact_; }
 
 private:
-    BoundCell(const Patch& patch, const Box& box, const Box& reach);
+    BoundCell(const Patch& patch, const Box& box, const Box& reach, std::shared_ptr<const PolynomialCell> exact);
     const BoundCell* child(const Patch& patch, const Box& of) const;
+    /// Of a box in the cell.
+    SecondDerivatives model_of(const Patch& patch, const Box& box, int parts = 1) const;
 
     Box box_;    // children halve it
     Box reach_;  // a margin wider: triangles that lie in here are served
+    std::shared_ptr<const PolynomialCell> exact_;
     SecondDerivatives model_;
     mutable std::array<std::atomic<BoundCell*>, 4> children_{};
+    /// What model_of() was asked last, by whether in one piece: the two triangles of a quadrilateral mostly share their box.
+    struct Last {
+        Box box;
+        int parts = 0;
+        SecondDerivatives model;
+    };
+    mutable std::mutex last_guard_;
+    mutable std::array<std::unique_ptr<const Last>, 2> last_;
 };
 
-/// The bound of a triangle in the box of the model. `least`: what no finer cell could go below, as far as the model tells; no bound.
-TriangleBound bound_triangle(const SecondDerivatives& model, const CornerData& triangle, Measure measure, bool least = false);
+/// The bound of a triangle in the box of the model, its turn left out where `turns` is false. `least`: what no finer cell could go below,
+/// as far as the model tells; no bound.
+TriangleBound bound_triangle(const SecondDerivatives& model, const CornerData& triangle, Measure measure, bool least = false, bool turns = true);
 
 }  // namespace isoparm

@@ -17,13 +17,26 @@ Vec2 climb(const Patch& patch, Vec2 at, double du, double dv, const std::functio
     const Rect r = patch.rect();
     const bool triangle = patch.domain() == Domain::triangle;
     double best = height(patch.point(at.x, at.y));
+    constexpr int ways = 6;
+    static constexpr double way_u[ways] = {1, -1, 0, 0, 1, -1}, way_v[ways] = {0, 0, 1, -1, -1, 1};
     for (double step = 1; step > 1e-6;) {
         bool better = false;
-        for (const Vec2 d : {Vec2{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}}) {
-            Vec2 next{std::clamp(at.x + step * du * d.x, r.u0, r.u1), std::clamp(at.y + step * dv * d.y, r.v0, r.v1)};
-            if (triangle && next.x + next.y > 1) continue;
-            const double h = height(patch.point(next.x, next.y));
-            if (h > best) best = h, at = next, better = true;
+        for (int first = 0; first < ways;) {  // all that are left from here at once, as mostly none is higher
+            double u[ways], v[ways];
+            Point x[ways];
+            for (int k = first; k < ways; ++k)
+                u[k] = std::clamp(at.x + step * du * way_u[k], r.u0, r.u1), v[k] = std::clamp(at.y + step * dv * way_v[k], r.v0, r.v1);
+            const auto outside = [&](int k) { return triangle && u[k] + v[k] > 1; };
+            for (int k = first; k < ways; ++k)
+                if (outside(k)) u[k] = at.x, v[k] = at.y;
+            patch.points(std::size_t(ways - first), u + first, v + first, x + first);
+            for (; first < ways; ++first) {
+                const double h = height(x[first]);
+                if (!(h > best)) continue;
+                best = h, at = {u[first], v[first]}, better = true;
+                ++first;
+                break;
+            }
         }
         if (!better) step *= 0.5;
     }

@@ -67,6 +67,11 @@ struct Oriented {
 };
 
 double error_of(const Bend& b, double a, double c, Measure measure) {
+    if (measure == Measure::geometric) {  // along the normal alone
+        const double uu = a * a * b.uu.x, vv = c * c * b.vv.x, uv = 2 * a * c * b.uv.x, plus = uu + vv + uv, minus = uu + vv - uv;
+        const double diagonal = std::fabs(plus) < std::fabs(minus) ? plus : minus;
+        return 0.5 * std::max(simplex_maximum(uu, vv, diagonal), simplex_maximum(-uu, -vv, -diagonal));
+    }
     const Point uu = a * a * b.uu, vv = c * c * b.vv, uv = 2 * a * c * b.uv, plus = uu + vv + uv, minus = uu + vv - uv;
     return error_of(uu, vv, dot(plus, plus) < dot(minus, minus) ? plus : minus, measure);
 }
@@ -78,7 +83,8 @@ struct Plan {
     std::array<std::array<double, kSamples>, kSamples> density{};  // [i][j]: vertices per width, along line j
 };
 
-Plan plan(const Oriented& bends, const std::vector<double>& dv, int n, double tolerance, Measure measure) {
+/// Given up, with more than `most` triangles, as soon as there are more.
+Plan plan(const Oriented& bends, const std::vector<double>& dv, int n, double tolerance, Measure measure, double most) {
     Plan p;
     p.n = n, p.triangles = 0;
     for (int i = 0; i < kSamples; ++i)
@@ -95,6 +101,7 @@ Plan plan(const Oriented& bends, const std::vector<double>& dv, int n, double to
             }
             p.density[i][j] = 1 / low;
             p.triangles += 2 * n * dv[j] / low * outcome(target, tolerance) / (kSamples * kSamples);
+            if (p.triangles > most) return p;
         }
     return p;
 }
@@ -187,7 +194,7 @@ DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure meas
         const double usual = std::sqrt(std::sqrt(squares) / kSamples / (6 * tolerance));
         if (!(usual * usual <= most)) return DiceGrid::single(box);
         for (double n = std::max(1.0, usual / 2); n <= 2 + 3 * usual; n = std::max(n + 1, n * kStep)) {
-            const Plan p = plan(turned, dv, int(n), tolerance, measure);
+            const Plan p = plan(turned, dv, int(n), tolerance, measure, best.triangles);
             if (p.triangles < best.triangles * (1 - 1e-9)) best = p, best_density = dv, best_columns = columns;
         }
     }

@@ -129,7 +129,7 @@ MeshProver::PartProof MeshProver::bound(const Mesh& mesh, const MeshPart& part, 
             data.slack = std::max(data.slack, proof.slack[c[k]]);
         }
         const BoundCell* cell = cells_[part.member].around(data.uv);
-        if (cell) proof.bounds[i] = BoundCell::bound(patch, cell, data, tolerance - data.slack, Measure::geometric);
+        if (cell) proof.bounds[i] = BoundCell::bound(patch, cell, data, tolerance - data.slack, Measure::geometric, TriangleBound::unasked);
         if (!(rounding::up(proof.bounds[i].own(Measure::geometric) + data.slack) <= tolerance))
             above.store(true, std::memory_order_relaxed);
     });

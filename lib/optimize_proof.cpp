@@ -9,7 +9,7 @@ bool FreePatch::prove(std::uint32_t i) {
     FreeTriangle& t = triangles_[i];
     const Places p = places(t.corner);
     const BoundCell* cell = t.root;
-    t.proof = BoundCell::bound(patch_, cell, p.corners(), tolerance_ - p.slack, measure_);
+    t.proof = BoundCell::bound(patch_, cell, p.corners(), tolerance_ - p.slack, measure_, TriangleBound::unasked);
     if (cell->model().bounded) t.cell = cell;
     t.proved = true, t.sharp = false;
     return t.proof.own(measure_) <= tolerance_;
@@ -24,7 +24,7 @@ void FreePatch::sharpen(std::uint32_t i) {
     const Places p = places(t.corner);
     const TriangleBound b = bound_triangle(SecondDerivatives(patch_, box_of(p.uv), SecondDerivatives::pieces), p.corners(), measure_);
     if (!b.quiet) return;
-    t.proof.normal = std::min(t.proof.normal, b.normal);
+    t.proof.parametric = std::min(t.proof.parametric, b.parametric), t.proof.normal = std::min(t.proof.normal, b.normal);
     for (int k = 0; k < 3; ++k) t.proof.across[k] = std::min(t.proof.across[k], b.across[k]), t.proof.beside[k] = std::min(t.proof.beside[k], b.beside[k]);
 }
 

@@ -25,6 +25,9 @@ template <class Count, class F> void for_all(std::size_t members, Count count, F
     });
 }
 
+/// Slack below this part of the tolerance need not be sharp.
+constexpr double kFew = 1e-8;
+
 /// A name for the mesh edge that an edge of a patch is, the same whichever patch and direction it is seen from.
 std::uint64_t mesh_edge(const PatchMesh& mesh, const PatchEdge& e) {
     const auto [a, b] = std::minmax(mesh.vertex[e.a], mesh.vertex[e.b]);
@@ -63,16 +66,22 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
     mesh.slack.resize(mesh.uv.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(first, mesh.uv.size(), 64), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            mesh.slack[i] = slack_of(surface_[member].patch, mesh.uv[i], positions_[mesh.vertex[i]]);
+            const Vec2& p = mesh.uv[i];
+            const Point& x = positions_[mesh.vertex[i]];
+            const auto on = [](double t, const std::vector<double>& breaks) { return std::binary_search(breaks.begin(), breaks.end(), t); };
+            const auto c = std::uint32_t(i);
+            const PolynomialCell* cell = on(p.x, mesh.breaks_u) || on(p.y, mesh.breaks_v) ? nullptr : &mesh.root_of({c, c, c})->polynomial();
+            const double quick = cell && cell->exists() ? cell->slack(p, x) : tolerance_;
+            mesh.slack[i] = quick <= kFew * tolerance_ ? quick : slack_of(surface_[member].patch, p, x);
         }
     });
 }
 
-void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t) const {
+void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide) const {
     CornerData data;
     for (int k = 0; k < 3; ++k) data.uv[k] = mesh.uv[t.corner[k]], data.points[k] = positions_[mesh.vertex[t.corner[k]]];
     data.slack = mesh.slack_of(t);
-    t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_, turn_);
+    t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_, turn_, decide);
 }
 
 bool Refinement::bound_and_mark() {
@@ -115,7 +124,7 @@ bool Refinement::bound_and_mark() {
 }
 
 bool Refinement::turns_little(const PatchMesh& mesh, const PatchTriangle& t) const {
-    if (t.proof.turn <= turn_ || !std::isfinite(turn_) || mesh.left_out(t)) return true;
+    if (turn_ == TriangleBound::unasked || t.proof.turn <= turn_ || !std::isfinite(turn_) || mesh.left_out(t)) return true;
     const auto [a, b, c] = mesh.vertices(t);
     const auto near = [&](std::uint32_t p, std::uint32_t q) { return length(positions_[p] - positions_[q]) <= tolerance_; };
     return !std::isfinite(t.proof.turn) && near(a, b) && near(b, c) && near(c, a);

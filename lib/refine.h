@@ -78,9 +78,9 @@ double edge_parameter(const Patch& patch, int edge, const Vec2& p);
 class Refinement {
 public:
     /// Begins with grids that are about as fine as the tolerance needs; with single cells when those would have more than `most` triangles.
-    /// `turn`: the largest tangent of the angle between a triangle and the surface's normals; geometric measure only.
+    /// `turn`: the largest tangent of the angle between a triangle and the surface's normals; geometric measure only. TriangleBound::none: any; or unasked.
     Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most = 1e6,
-               double turn = std::numeric_limits<double>::infinity());
+               double turn = TriangleBound::unasked);
 
     /// Bounds all triangles that have no bound and marks the worst edge of those above the tolerance, unless turning an edge mends them;
     /// true when none is.
@@ -142,7 +142,7 @@ private:
     void place_vertices(std::uint32_t member, std::size_t first_corner, std::uint32_t first_vertex);
     void measure_slack(std::uint32_t member, std::size_t first);
     void collect_slack(const std::vector<std::size_t>& first);
-    void bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t) const;
+    void bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
     bool flip(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, int edge, bool with_neighbours) const;
     bool flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, bool with_neighbours) const;
     void mark(PatchMesh& mesh, std::uint32_t edge);

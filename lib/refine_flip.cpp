@@ -48,7 +48,7 @@ bool Refinement::flip(PatchMesh& mesh, std::uint32_t member, std::uint32_t i, in
     right.corner = {d, b, c}, right.edge = {o.edge[(m + 2) % 3], t.edge[(k + 1) % 3], diagonal};
     for (PatchTriangle* n : {&left, &right}) {
         n->cell = mesh.root_of(n->corner);
-        bound(mesh, member, *n);
+        bound(mesh, member, *n, true);
         if (!(n->proof.own(measure_) + mesh.slack_of(*n) <= tolerance_ && turns_little(mesh, *n))) return false;
     }
     const PatchTriangle before[2] = {t, o};

@@ -180,7 +180,8 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     if (!surface.empty() && !(diagonal > 1e-70 && diagonal < 1e70))
         throw_input("found a surface of size " + to_text(diagonal) + ", expected one between 1e-70 and 1e70 to tessellate; scale the data");
     const Topology topology = find_topology(surface, join_tolerance(options.tolerance, diagonal));
-    const double turn = options.normal_deviation > 0 ? tangent_down(options.normal_deviation) : std::numeric_limits<double>::infinity();
+    const bool turns = options.measure == Measure::geometric && (options.study || options.normal_deviation > 0);
+    const double turn = options.normal_deviation > 0 ? tangent_down(options.normal_deviation) : turns ? TriangleBound::none : TriangleBound::unasked;
     const auto fast = [&] {
         auto refined = std::make_unique<Refinement>(surface, topology, options.tolerance, options.measure, double(options.max_triangles), turn);
         refine(*refined, options);
@@ -211,7 +212,7 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
         result.certified_error = std::max(result.certified_error, part.certified_error);
         result.surfaces.push_back({part.name, part.triangles.size(), part.certified_error, options.study ? optimal_triangles(surface[m].patch, options.tolerance) : 0});
     }
-    if (options.measure == Measure::geometric) report_normals(refinement, turn, result);
+    if (turns) report_normals(refinement, turn, result);
     if (options.study) result.sampled_error = refinement.sampled_error();
     result.seconds_sample = seconds_since(start);
     return result;

@@ -18,7 +18,7 @@ struct TessellationOptions {
     double tolerance = 0;                    // scene units, absolute, > 0: largest distance between mesh and surface, both ways
     Measure measure = Measure::parametric;   // geometric: the distance of the two sets; parametric: of points at equal parameters, never less
     std::size_t max_triangles = 20'000'000;  // budget; beyond it tessellate() throws Error(budget)
-    bool study = true;                       // false leaves sampled_error and optimal_triangles 0
+    bool study = true;                       // false leaves sampled_error, optimal_triangles and, without a limit, normal_deviation 0
     std::function<void(double)> progress;    // called from the calling thread with a fraction in [0,1]; may be empty
     double normal_deviation = 0;             // degrees, below 90: largest angle between a triangle's normal and those of the surface over it; 0: any
     Quality quality = Quality::fast;

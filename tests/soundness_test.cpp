@@ -97,5 +97,54 @@ TEST(Soundness, NoBoundIsBelowWhatDenseSamplesShow) {
     std::printf("%zu triangles: %zu violations; %zu bounds would be violated if they were 1 %% smaller; %zu quiet, %zu without a bound\n", all.triangles, all.violations, all.within_one_percent, all.quiet, all.unbounded);
 }
 
+double at_most(const Vec3<Interval>& x) { return rounding::length_up(mag(x.x), mag(x.y), mag(x.z)); }
+Vec3<Interval> enclosed(const Point& x) { return {Interval(x.x), Interval(x.y), Interval(x.z)}; }
+
+/// What the plain Taylor model says of second derivatives, against intervals at random points of random boxes; and that it is as sharp.
+TEST(Soundness, PolynomialCellsEncloseSecondDerivativesAndVertices) {
+    std::size_t boxes = 0, tight = 0;
+    for (const PatchType& type : patch_types())
+        for (std::uint64_t seed = 71000; seed < 71004; ++seed) {
+            Random random(seed);
+            const Patch patch = type.make(random).patch;
+            const auto us = patch.lines_u(), vs = patch.lines_v();
+            const PolynomialCell cell(patch, {{us[0], us[1]}, {vs[0], vs[1]}});
+            if (!cell.exists()) continue;
+            const double size = size_of_sample(patch), wide = std::pow(2.0, -random.number(0, 12));
+            const auto piece = [&](double a, double b) {
+                if (patch.domain() == Domain::triangle) b = 0.5 * (a + b);
+                const double at = a + (b - a) * random.number(0, 0.5), to = std::min(b, at + 0.5 * wide * (b - a));
+                return Interval(at, std::max(at, to));
+            };
+            const Box box{piece(us[0], us[1]), piece(vs[0], vs[1])};
+            const SecondDerivatives whole = cell(box), pieces = cell(box, 3), intervals(patch, box);
+            ++boxes;
+            for (std::size_t k = 0; k < 4; ++k) {
+                EXPECT_LE(pieces.t_rad[k], whole.t_rad[k]) << type.name;
+                EXPECT_LE(whole.t_rad[k], 1.01 * intervals.t_rad[k] + 1e-11 * (size + intervals.t_size[k])) << type.name;
+            }
+            for (int n = 0; n < 20; ++n) {
+                const double u = random.number(box.u.lo, box.u.hi), v = random.number(box.v.lo, box.v.hi), du = u - whole.u, dv = v - whole.v;
+                const Vec3<JetUV<Interval, 2>> exact = patch.enclose({{u, u}, {v, v}}).centre;
+                for (const SecondDerivatives& m : {whole, pieces})
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        const int i = JetUV<Interval, 2>::index(2 - int(k), int(k));
+                        const Interval scale(k == 1 ? 1 : 2);
+                        const Point here = m.h[k] + du * m.t[k] + dv * m.t[k + 1];
+                        const Vec3<Interval> off = Vec3<Interval>{scale * exact.x.c[i], scale * exact.y.c[i], scale * exact.z.c[i]} - enclosed(here);
+                        const double seen = at_most(off), allowed = m.h_rad[k] + m.t_rad[k] * std::fabs(du) + m.t_rad[k + 1] * std::fabs(dv);
+                        EXPECT_LE(seen, allowed * (1 + 1e-12) + 1e-13 * (m.h_size[k] + size)) << type.name << " at (" << u << ", " << v << ")";
+                        tight += seen > 0.25 * allowed && allowed > 1e-10 * m.h_size[k];
+                    }
+                const Point on = patch.point(u, v), away = on + Point{0, size * random.number(0, 1e-3), 0};
+                const double slack = cell.slack({u, v}, away);
+                EXPECT_GE(slack, length(away - on) - 1e-14 * size) << type.name;
+                EXPECT_LE(slack, length(away - on) + 1e-12 * size) << type.name;
+            }
+        }
+    EXPECT_GT(boxes, 20u);
+    EXPECT_GT(tight, 20u);  // radii of a quarter of the size would not do
+}
+
 }  // namespace
 }  // namespace isoparm::tests

@@ -1,0 +1,226 @@
+#include "second_derivatives.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isoparm {
+namespace {
+
+/// Sums and products of numbers >= 0, a few dozen operations long, are at most this factor too small, up to underflow.
+constexpr double kSafe = 1 + 1e-13, kUnderflow = 1e-290;
+double safe(double x) { return x * kSafe + kUnderflow; }
+
+Point middle(const Vec3<Interval>& x) { return {mid(x.x), mid(x.y), mid(x.z)}; }
+double radius(const Vec3<Interval>& x) { return rounding::length_up(rad(x.x), rad(x.y), rad(x.z)); }
+double size_of(const Point& x) { return rounding::length_up(std::fabs(x.x), std::fabs(x.y), std::fabs(x.z)); }
+bool bounded(const Vec3<Interval>& x) { return x.x.bounded() && x.y.bounded() && x.z.bounded(); }
+
+/// Piece (i, j) of parts x parts.
+Box piece_of(const Box& box, int i, int j, int parts) {
+    const auto cut = [parts](const Interval& x, int k) {
+        const auto at = [&](int n) { return n == 0 ? x.lo : n == parts ? x.hi : x.lo + (x.hi - x.lo) * n / parts; };
+        return Interval(at(k), at(k + 1));
+    };
+    return {cut(box.u, i), cut(box.v, j)};
+}
+
+/// The ranges over a box become the hulls of those over pieces of it, pieces outside the domain left out: intervals that overestimate
+/// grow with the box.
+void enclose_pieces(Enclosure& e, const Patch& patch, const Box& box, int parts) {
+    Vec3<JetUV<Interval, 3>> hull_of_all;
+    bool first = true;
+    for (int i = 0; i < parts; ++i)
+        for (int j = 0; j < parts; ++j) {
+            const Box piece = piece_of(box, i, j, parts);
+            if (patch.domain() == Domain::triangle && piece.u.lo + piece.v.lo > 1 + 1e-15) continue;
+            const auto over = patch.enclose(piece).over;
+            for (std::size_t k = 0; k < std::size(over.x.c); ++k)
+                for (const auto axis : {&Vec3<JetUV<Interval, 3>>::x, &Vec3<JetUV<Interval, 3>>::y, &Vec3<JetUV<Interval, 3>>::z}) {
+                    Interval& all = (hull_of_all.*axis).c[k];
+                    all = first ? (over.*axis).c[k] : hull(all, (over.*axis).c[k]);
+                }
+            first = false;
+        }
+    if (!first) e.over = hull_of_all;
+}
+
+}  // namespace
+
+SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box, int parts) {
+    Enclosure e = patch.enclose(box);
+    if (parts > 1) enclose_pieces(e, patch, box, parts);
+    u = e.u, v = e.v;
+    const auto centre = [&](int i, int j, double scale) {
+        const int k = JetUV<Interval, 2>::index(i, j);
+        const Interval s(scale);
+        return Vec3<Interval>{s * e.centre.x.c[k], s * e.centre.y.c[k], s * e.centre.z.c[k]};
+    };
+    const auto over = [&](int i, int j, double scale) {
+        const int k = JetUV<Interval, 3>::index(i, j);
+        const Interval s(scale);
+        return Vec3<Interval>{s * e.over.x.c[k], s * e.over.y.c[k], s * e.over.z.c[k]};
+    };
+    const Vec3<Interval> second[3] = {centre(2, 0, 2), centre(1, 1, 1), centre(0, 2, 2)};
+    const Vec3<Interval> third[4] = {over(3, 0, 6), over(2, 1, 2), over(1, 2, 2), over(0, 3, 6)};
+    for (int k = 0; k < 4; ++k) {
+        if (!isoparm::bounded(third[k])) return;
+        t[k] = middle(third[k]), t_rad[k] = radius(third[k]);
+    }
+    for (int k = 0; k < 3; ++k) {
+        if (!isoparm::bounded(second[k])) return;
+        h[k] = middle(second[k]), h_rad[k] = radius(second[k]);
+    }
+    add_sizes(rounding::up(std::max(box.u.hi - u, u - box.u.lo)), rounding::up(std::max(box.v.hi - v, v - box.v.lo)));
+}
+
+void SecondDerivatives::add_sizes(double ru, double rv) {
+    for (int k = 0; k < 4; ++k) t_size[k] = safe(size_of(t[k]) + t_rad[k]);
+    for (int k = 0; k < 3; ++k) h_size[k] = safe(size_of(h[k]) + t_size[k] * ru + t_size[k + 1] * rv);
+    const double all = h_size[0] + h_size[1] + h_size[2] + t_size[0] + t_size[1] + t_size[2] + t_size[3] + h_rad[0] + h_rad[1] + h_rad[2];
+    bounded = all < 1e290;
+}
+
+PolynomialCell::PolynomialCell(const Patch& patch, const Box& box) {
+    const auto index = [](const std::vector<double>& lines, const Interval& x) -> std::size_t {
+        const auto after = std::upper_bound(lines.begin(), lines.end() - 1, x.lo);
+        return after == lines.begin() || !(x.hi <= *after) ? SIZE_MAX : std::size_t(after - lines.begin()) - 1;
+    };
+    const std::vector<double> us = patch.lines_u(), vs = patch.lines_v();
+    const std::size_t i = index(us, box.u), j = index(vs, box.v);
+    if (i == SIZE_MAX || j == SIZE_MAX) return;
+    const std::vector<Polynomial> form = patch.exact_cell(i, j);
+    if (form.size() != 3) return;  // none, or rational
+    for (const Polynomial& f : form) p_ = std::max(p_, f.degree_u()), q_ = std::max(q_, f.degree_v());
+    if (p_ > max_degree || q_ > max_degree) return;
+    const Interval u(us[i], us[i + 1]), v(vs[j], vs[j + 1]);
+    u_ = mid(u), v_ = mid(v);
+    c_.assign(std::size_t((p_ + 1) * (q_ + 1)), Lanes{});
+    for (int axis = 0; axis < 3; ++axis)
+        for (int s = 0; s <= form[axis].degree_u(); ++s)
+            for (int t = 0; t <= form[axis].degree_v(); ++t) c_[std::size_t(s * (q_ + 1) + t)][std::size_t(axis)] = mid(form[axis].coefficient(s, t));
+    bound_errors(form, rounding::up(rad(u)), rounding::up(rad(v)));
+}
+
+/// In repeated synthetic division every term of a sum passes 2 p additions and p products, and has p rounded factors u - u_ at most; the same
+/// along v. So rounding is below 4 (p + q) units of the sum of the terms' sizes; 8 more are for scaling by 2 or 6.
+void PolynomialCell::bound_errors(const std::vector<Polynomial>& form, double hu, double hv) {
+    const double relative = (4.0 * (p_ + q_) + 8) * 0x1p-53 * (1 + 1e-12);
+    error_.assign(c_.size(), 0.0);
+    for (int i = 0; i <= p_; ++i)
+        for (int j = 0; j <= q_; ++j) {
+            double each[3] = {0, 0, 0}, weights = 1;
+            double x = 1;
+            for (int s = i; s <= p_; ++s, x *= hu) {
+                double y = 1;
+                for (int t = j; t <= q_; ++t, y *= hv) {
+                    const double weight = binomial(s, i) * binomial(t, j) * x * y;
+                    weights += weight;
+                    for (int axis = 0; axis < 3; ++axis) {
+                        if (s > form[axis].degree_u() || t > form[axis].degree_v()) continue;
+                        const Interval& c = form[axis].coefficient(s, t);
+                        each[axis] += weight * (relative * mag(c) + (c.lo == c.hi ? 0 : rad(c)));
+                    }
+                }
+            }
+            error_[std::size_t(i * (q_ + 1) + j)] = safe(rounding::length_up(each[0], each[1], each[2])) + weights * kUnderflow;
+        }
+}
+
+namespace {
+
+using Lanes = std::array<double, 4>;
+
+/// x + y d
+void step(Lanes& x, const Lanes& y, double d) {
+    for (std::size_t lane = 0; lane < 4; ++lane) x[lane] += y[lane] * d;
+}
+
+constexpr double kBinomial[6][6] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}, {1, 4, 6, 4, 1}, {1, 5, 10, 10, 5, 1}};
+
+}  // namespace
+
+double PolynomialCell::slack(const Vec2& p, const Point& x) const {
+    const double du = p.x - u_, dv = p.y - v_;
+    Lanes sum{};
+    for (int i = p_; i >= 0; --i) {
+        const Lanes* row = &c_[std::size_t(i * (q_ + 1))];
+        Lanes at = row[q_];
+        for (int j = q_ - 1; j >= 0; --j) {
+            Lanes next = row[j];
+            step(next, at, dv);
+            at = next;
+        }
+        step(at, sum, du);
+        sum = at;
+    }
+    const auto off = [](double a, double b) { return rounding::up(std::fabs(a - b)); };
+    return rounding::up(rounding::length_up(off(sum[0], x.x), off(sum[1], x.y), off(sum[2], x.z)) + error_[0]);
+}
+
+SecondDerivatives PolynomialCell::operator()(const Box& box) const { return p_ == 3 && q_ == 3 ? over<3, 3>(box) : over<-1, -1>(box); }
+
+template <int P, int Q> SecondDerivatives PolynomialCell::over(const Box& box) const {
+    constexpr int order = 4, size = max_degree + 1;
+    const int p = P < 0 ? p_ : P, q = Q < 0 ? q_ : Q, stride = q + 1;
+    SecondDerivatives m;
+    m.u = mid(box.u), m.v = mid(box.v);
+    const double ru = rounding::up(std::max(box.u.hi - m.u, m.u - box.u.lo)), rv = rounding::up(std::max(box.v.hi - m.v, m.v - box.v.lo));
+    Lanes a[size * size];
+    std::copy_n(c_.begin(), (p + 1) * stride, a);
+    const double du = m.u - u_, dv = m.v - v_;  // to Taylor coefficients about (m.u, m.v)
+    for (int k = 0; k < p; ++k)
+        for (int i = p - 1; i >= k; --i)
+            for (int j = 0; j <= q; ++j) step(a[i * stride + j], a[(i + 1) * stride + j], du);
+    for (int i = 0; i <= p; ++i)
+        for (int k = 0; k < q; ++k)
+            for (int j = q - 1; j >= k; --j) step(a[i * stride + j], a[i * stride + j + 1], dv);
+    const auto coefficient = [&](int i, int j) -> Lanes { return i <= p && j <= q ? a[i * stride + j] : Lanes{}; };
+    const auto error = [&](int i, int j) { return i <= p && j <= q ? error_[std::size_t(i * stride + j)] : 0; };
+    const auto point = [](const Lanes& x, double scale) { return Point{scale * x[0], scale * x[1], scale * x[2]}; };
+    for (int k = 0; k < 3; ++k) {
+        const double scale = k == 1 ? 1 : 2;
+        m.h[std::size_t(k)] = point(coefficient(2 - k, k), scale), m.h_rad[std::size_t(k)] = safe(scale * error(2 - k, k));
+    }
+    // Third derivatives over the box: the coefficient, and multiples of those behind it. Where both powers are even the multiple is from 0 up.
+    double power_u[size] = {1}, power_v[size] = {1};
+    for (int k = 1; k < size; ++k) power_u[k] = power_u[k - 1] * ru, power_v[k] = power_v[k - 1] * rv;
+    static constexpr double factorial[order] = {1, 1, 2, 6};
+    for (int k = 0; k < order; ++k) {
+        const int i = 3 - k, j = k;
+        const double scale = factorial[i] * factorial[j];
+        Lanes middle = coefficient(i, j), off{};
+        double rest = error(i, j);
+        for (int s = i; s <= p; ++s)
+            for (int t = s == i ? j + 1 : j; t <= q; ++t) {
+                const Lanes& c = a[s * stride + t];
+                const double weight = std::max(kBinomial[s][i] * kBinomial[t][j] * power_u[s - i] * power_v[t - j], rounding::kTiny);
+                const bool one_sided = (s - i) % 2 == 0 && (t - j) % 2 == 0;
+                const double half = one_sided ? 0.5 * weight : weight;
+                for (std::size_t lane = 0; lane < 4; ++lane) {
+                    if (one_sided) middle[lane] += half * c[lane];
+                    off[lane] += half * std::fabs(c[lane]);
+                }
+                rest += weight * error(s, t);
+            }
+        m.t[std::size_t(k)] = point(middle, scale);
+        const double moved = 64 * 0x1p-53 * (std::fabs(middle[0]) + std::fabs(middle[1]) + std::fabs(middle[2]) + off[0] + off[1] + off[2]);  // rounding of the middle
+        m.t_rad[std::size_t(k)] = safe(scale * (rounding::length_up(off[0], off[1], off[2]) + rest + moved));
+    }
+    m.add_sizes(ru, rv);
+    return m;
+}
+
+SecondDerivatives PolynomialCell::operator()(const Box& box, int parts) const {
+    SecondDerivatives all = (*this)(box);
+    std::array<double, 4> most{};
+    for (int i = 0; i < parts; ++i)
+        for (int j = 0; j < parts; ++j) {
+            const SecondDerivatives piece = (*this)(piece_of(box, i, j, parts));
+            for (std::size_t k = 0; k < 4; ++k) most[k] = std::max(most[k], safe(size_of(piece.t[k] - all.t[k]) + piece.t_rad[k] + 0x1p-52 * (piece.t_size[k] + all.t_size[k])));
+        }
+    for (std::size_t k = 0; k < 4; ++k) all.t_rad[k] = std::min(all.t_rad[k], most[k]);
+    all.add_sizes(rounding::up(std::max(box.u.hi - all.u, all.u - box.u.lo)), rounding::up(std::max(box.v.hi - all.v, all.v - box.v.lo)));
+    return all;
+}
+
+}  // namespace isoparm
