@@ -18,6 +18,7 @@
 #include <cstring>
 #include <thread>
 
+#include "commands/guard.h"
 #include "error.h"
 #include "image_header.h"
 #include "image_loader.h"
@@ -72,6 +73,7 @@ void give_up_rights(const ImageLimits& limits) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which reserve terabytes of addresses
     if (const std::size_t used = address_space()) limit(RLIMIT_AS, used + limits.memory);
 #endif
+    leave_crashes();
     for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) ::signal(s, SIG_DFL);
     if (const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC); nowhere >= 0) ::dup2(nowhere, 1), ::dup2(nowhere, 2);  // decoders talk
 }
