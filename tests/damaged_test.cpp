@@ -77,7 +77,7 @@ protected:
         const std::string& in = folder.path();
         const fs::path source = test::source_folder();
         fs::copy_file(source / "scenes/coons.json", in + "/coons.json");
-        fs::copy_file(source / "tests/fuzz/corpus/teapot_part.bv", in + "/part.bv");
+        fs::copy_file(source / "scenes/teapot.bv", in + "/teapot.bv");
         fs::copy_file(source / "tests/data/cages/semisharp.obj", in + "/cage.obj");
         write_all(in + "/file.json", R"({"isoparm": 1, "surfaces": {"s": {"type": "file", "path": "damaged.bv"}}, "objects": [{"surface": "s"}], "tessellation": {"tolerance": 0.1}})");
         const std::string& file = GetParam().file;
@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(Files, Damaged,
                          testing::Values(Kind{"a.exr", "diff a.exr FILE -q", false, 2}, Kind{"a.png", "diff a.png FILE -q --html page.html", false, 2}, Kind{"a.jpg", "diff a.jpg FILE -q", false, 1},
                                          Kind{"a.tif", "diff a.tif FILE -q", false, 1}, Kind{"a.tga", "diff a.tga FILE -q", false, 1}, Kind{"a.bmp", "diff FILE a.bmp -q", false, 1},
                                          Kind{"m.ply", "verify FILE --against coons.json", false, 8}, Kind{"m.obj", "verify FILE --against coons.json", true, 8}, Kind{"m.stl", "verify FILE --against coons.json", false, 8},
-                                         Kind{"cage.obj", "limit FILE", true, 20}, Kind{"part.bv", "tessellate file.json -o o.ply --max-triangles 5000 --quiet", true, 20}, Kind{"coons.json", "info FILE", true, 20},
+                                         Kind{"cage.obj", "limit FILE", true, 20}, Kind{"teapot.bv", "tessellate file.json -o o.ply --max-triangles 5000 --quiet", true, 20}, Kind{"coons.json", "info FILE", true, 20},
                                          Kind{"coons.json", "tessellate FILE -o o.ply --max-triangles 5000 --quiet", true, 20}, Kind{"coons.json", "check FILE", true, 8},
                                          Kind{"coons.json", "render FILE -o o.png --size 24x16 --samples 1 --quiet", true, 2}, Kind{"c.json", "verify m.ply --certificate FILE --against coons.json", true, 20}),
                          [](const auto& info) { return std::to_string(info.index) + "_" + fs::path(info.param.file).extension().string().substr(1); });
