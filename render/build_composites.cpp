@@ -1,7 +1,7 @@
 // build_composites.cpp -- surfaces that a scene file makes of surfaces, or reads from other files.
 #include <algorithm>
-#include <filesystem>
 
+#include "included_file.h"
 #include "io/bv.h"
 #include "io/extension.h"
 #include "curves/modify.h"
@@ -77,19 +77,15 @@ BuiltSurface build_transformed_surface(const Json& j, SceneBuilder& scene) {
 BuiltSurface build_file(const Json& j, SceneBuilder& scene) {
     const Json path = j.at("path", "the name of a .bv file, relative to the scene");
     const std::string& name = scene.values().text(path, "the name of a .bv file, relative to the scene");
-    const std::filesystem::path file = std::filesystem::path(j.file()).parent_path() / name;
-    if (extension_of(file) != ".bv") path.expected("a file that ends in .bv (other formats are not read)");
-    std::error_code code;  // a pipe would wait, a device never end
-    if (std::filesystem::exists(file, code) && !std::filesystem::is_regular_file(file, code)) {
-        path.fail("found " + std::string(std::filesystem::is_directory(file, code) ? "a folder" : "a pipe or device") + ", expected a regular file");
-    }
+    if (extension_of(name) != ".bv") path.expected("a file that ends in .bv (other formats are not read)");
+    const std::string file = included_file(path, name);
     std::string text;
     try {
-        text = read_text_file(file.string());
+        text = read_text_file(file);
     } catch (const Error& e) {
         path.fail("found a file that cannot be used, expected a BV file: " + std::string(e.what()));
     }
-    return BuiltSurface(read_bv(text, file.string()));
+    return BuiltSurface(read_bv(text, file));
 }
 
 }  // namespace isoparm

@@ -1,9 +1,9 @@
 // build_subdivision.cpp -- limit surfaces of subdivision cages, from an OBJ file or given in the scene.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
+#include "included_file.h"
 #include "io/cage_obj.h"
 #include "registry.h"
 #include "subdivision.h"
@@ -18,12 +18,9 @@ constexpr std::size_t kMostCorners = 500;  // of a face, as make_subdivision() h
 
 Cage read_cage(const Json& j, const SceneValues& values) {
     const std::string& name = values.text(j, "the name of an .obj file, relative to the scene, or a cage");
-    const std::filesystem::path file = std::filesystem::path(j.file()).parent_path() / name;
-    std::error_code code;  // a pipe would wait, a device never end
-    if (std::filesystem::exists(file, code) && !std::filesystem::is_regular_file(file, code))
-        j.fail("found " + std::string(std::filesystem::is_directory(file, code) ? "a folder" : "a pipe or device") + ", expected a regular file");
+    const std::string file = included_file(j, name);
     try {
-        return read_cage_obj(read_text_file(file.string()), file.string());
+        return read_cage_obj(read_text_file(file), file);
     } catch (const Error& e) {
         j.fail("found a file that cannot be used, expected an OBJ cage: " + std::string(e.what()));
     }

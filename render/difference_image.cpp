@@ -84,7 +84,7 @@ DifferenceImage::DifferenceImage(const std::string& path, const std::string& fil
         l.channels.push_back(places);
     }
     IsoparmImageError error{};
-    l.file = image_module().create(file.c_str(), layers.data(), static_cast<int>(layers.size()), &error);
+    l.file = image_module().create(file.c_str(), extension_of(path).substr(1).c_str(), layers.data(), static_cast<int>(layers.size()), &error);
     l.check(!l.file, error);
 }
 
@@ -119,6 +119,7 @@ struct NotWanted {};
 }  // namespace
 
 void write_difference(const std::string& path, const std::vector<ImagePart>& parts, bool absolute, double scale, const std::function<bool(DifferenceImage&)>& fill) {
+    image_module();  // loaded before there is a file to lose
     try {
         write_atomically_by_name(path, [&](const std::string& file) {
             DifferenceImage image(path, file, parts, absolute, scale);

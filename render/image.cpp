@@ -102,7 +102,7 @@ void write_file(const std::string& path, const std::string& file, const Format& 
         values.push_back(value.c_str());
     }
     IsoparmImageError error{};
-    if (image_module().write(file.c_str(), &pixels, format.lossy, names.data(), values.data(), static_cast<int>(names.size()),
+    if (image_module().write(file.c_str(), format.extension, &pixels, format.lossy, names.data(), values.data(), static_cast<int>(names.size()),
                        &error) != 0) {
         std::string told = error.text;  // about the temporary, which is not the user's business
         if (const auto at = told.find(file); at != std::string::npos)
@@ -144,6 +144,7 @@ bool holds_layers(const std::string& path) { return format_of(path).linear; }
 void write_image(const std::string& path, const Image& image, const Layers& layers, const Metadata& metadata) {
     const Format& format = format_of(path);
     if (!layers.channels.empty() && !format.linear) throw Error(ErrorKind::usage, path + ": only .exr holds further channels");
+    image_module();  // loaded before there is a file to lose
     write_atomically_by_name(path, [&](const std::string& file) { write_file(path, file, format, image, layers, metadata); });
 }
 void write_image(const std::string& path, const Image& image, const Metadata& metadata) { write_image(path, image, {}, metadata); }

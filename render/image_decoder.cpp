@@ -18,6 +18,7 @@
 #include <cstring>
 #include <thread>
 
+#include "commands/guard.h"
 #include "error.h"
 #include "image_header.h"
 #include "image_loader.h"
@@ -72,6 +73,7 @@ void give_up_rights(const ImageLimits& limits) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which reserve terabytes of addresses
     if (const std::size_t used = address_space()) limit(RLIMIT_AS, used + limits.memory);
 #endif
+    leave_crashes();
     for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) ::signal(s, SIG_DFL);
     if (const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC); nowhere >= 0) ::dup2(nowhere, 1), ::dup2(nowhere, 2);  // decoders talk
 }
@@ -138,10 +140,19 @@ ImageHeader checked_header(const std::string& path, const ImageLimits& limits) {
         for (ssize_t n; have < bytes.size() && (n = ::read(file, &bytes[have], bytes.size() - have)) > 0;) have += static_cast<std::size_t>(n);
         bytes.resize(have);
     }
-    ::close(file);
+    struct Closed {
+        int file;
+        ~Closed() { ::close(file); }
+    } const closed{file};
     if (!regular) fail(S_ISDIR(found.st_mode) ? "found a folder, expected an image" : "found a device or pipe, expected an image");
     const ImageHeader h = read_image_header(bytes, static_cast<std::uint64_t>(found.st_size), path);
     if (h.pixels > limits.pixels) fail("found " + std::to_string(h.pixels) + " pixels in the header, expected at most " + std::to_string(limits.pixels) + " (--max-pixels)");
+    check_image_end(h.format, static_cast<std::uint64_t>(found.st_size), [&](std::uint64_t at, std::size_t n) {
+        std::string part(n, '\0');
+        const ssize_t got = ::pread(file, part.data(), n, static_cast<off_t>(at));
+        part.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+        return part;
+    }, path);
     if (h.row > kSlot / sizeof(double)) fail("found rows of " + std::to_string(h.row) + " numbers in the header, expected at most " + std::to_string(kSlot / sizeof(double)));
     return h;
 }

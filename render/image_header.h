@@ -4,6 +4,7 @@
 // read; any bytes end in a header or an Error. Pure; thread-safe.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,5 +29,9 @@ std::string format_of_name(const std::string& path);
 /// `bytes`: the first kHeaderBytes of the file, or all of it; `size`: of the file; `path` is for messages. The extension of the path and the
 /// bytes must agree. Throws Error(io): what was found, and what was expected.
 ImageHeader read_image_header(std::string_view bytes, std::uint64_t size, const std::string& path);
+
+/// Does a PNG file of `size` bytes end in its IEND chunk, a JPEG file in its EOI marker? Decoders fill up what was cut off, and say nothing.
+/// `read` gives bytes [at, at + n) of the file, fewer where it ends. Throws Error(io) if not; other formats are not looked at.
+void check_image_end(const std::string& format, std::uint64_t size, const std::function<std::string(std::uint64_t at, std::size_t n)>& read, const std::string& path);
 
 }  // namespace isoparm

@@ -5,6 +5,7 @@
 #include "error.h"
 #include "image_loader.h"
 #include "io/atomic_file.h"
+#include "io/extension.h"
 
 namespace isoparm {
 namespace {
@@ -44,7 +45,7 @@ void write_layers(const std::string& path, const std::vector<ImageLayer>& layers
         const auto check = [&](bool good) {
             if (!good) throw Error(ErrorKind::io, path + ": writing the image failed: " + error.text);
         };
-        IsoparmImageWriter* writer = module.create(file.c_str(), all.data(), static_cast<int>(all.size()), &error);
+        IsoparmImageWriter* writer = module.create(file.c_str(), extension_of(path).substr(1).c_str(), all.data(), static_cast<int>(all.size()), &error);
         check(writer);
         for (std::size_t i = 0; i < layers.size(); ++i)
             if (module.put(writer, static_cast<int>(i), 0, layers[i].part.data.height, layers[i].values.data(), &error) != 0) {

@@ -19,9 +19,9 @@ struct IsoparmImagePixels {
     const float* layer_data;
 };
 
-/// Writes `file` in the format of its extension and reads it back; `lossy` formats need only come back in the same
+/// Writes `file` in the format of that extension ("png") and reads it back; `lossy` formats need only come back in the same
 /// size. Returns 0 or fills `error`.
-int isoparm_image_write(const char* file, const IsoparmImagePixels* pixels, int lossy, const char* const* names,
+int isoparm_image_write(const char* file, const char* format, const IsoparmImagePixels* pixels, int lossy, const char* const* names,
                         const char* const* values, int metadata, IsoparmImageError* error);
 
 /// Calls `sink` with all channels as floats (of more than four: R, G, B and A only), unassociated alpha where the format has that, and the bytes flag when the
@@ -63,8 +63,8 @@ struct IsoparmImageLayer {
     const char* space;                                // of colours: "Linear", "sRGB"
 };
 struct IsoparmImageWriter;
-/// The parts follow each other, from the top. Null, and `error` is filled, on failure.
-IsoparmImageWriter* isoparm_image_create(const char* file, const IsoparmImageLayer* layers, int count, IsoparmImageError* error);
+/// The parts follow each other, from the top; `format` is an extension. Null, and `error` is filled, on failure.
+IsoparmImageWriter* isoparm_image_create(const char* file, const char* format, const IsoparmImageLayer* layers, int count, IsoparmImageError* error);
 int isoparm_image_put(IsoparmImageWriter* file, int layer, int first, int rows, const float* data, IsoparmImageError* error);
 /// Closes and reads back; frees the writer in any case.
 int isoparm_image_finish(IsoparmImageWriter* file, IsoparmImageError* error);

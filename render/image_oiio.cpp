@@ -1,14 +1,17 @@
 // image_oiio.cpp -- the module isoparm_image.so: the only file that includes OpenImageIO. Loaded when an image is first
 // read or written, because linking OpenImageIO costs half a second at every start.
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/thread.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -62,6 +65,16 @@ std::unique_ptr<OIIO::ImageInput> opened(const char* file) {
     return in;
 }
 
+/// By the reader of one format, whatever the name is.
+std::unique_ptr<OIIO::ImageInput> opened_as(const char* file, const char* format) {
+    auto in = OIIO::ImageInput::create(format);
+    if (!in) throw std::runtime_error(reason(OIIO::geterror()));
+    OIIO::ImageSpec as_stored, found;
+    as_stored.attribute("oiio:UnassociatedAlpha", 1);
+    if (!in->open(file, found, as_stored)) throw std::runtime_error(reason(in->geterror()));
+    return in;
+}
+
 /// Pixels of the first subimage in the given format.
 std::vector<unsigned char> read_pixels(OIIO::ImageInput& in, OIIO::TypeDesc format) {
     const OIIO::ImageSpec& spec = in.spec();
@@ -71,8 +84,8 @@ std::vector<unsigned char> read_pixels(OIIO::ImageInput& in, OIIO::TypeDesc form
     return data;
 }
 
-void check_written(const char* file, const IsoparmImagePixels& p, const void* data, OIIO::TypeDesc format, bool lossy) {
-    const auto in = opened(file);
+void check_written(const char* file, const char* type, const IsoparmImagePixels& p, const void* data, OIIO::TypeDesc format, bool lossy) {
+    const auto in = opened_as(file, type);
     const auto back = read_pixels(*in, format);
     const bool same_size =
         in->spec().width == p.width && in->spec().height == p.height && in->spec().nchannels == p.channels;
@@ -123,14 +136,37 @@ void set_metadata(OIIO::ImageSpec& spec, const char* const* names, const char* c
     for (int i = 0; i < metadata; ++i) spec.attribute(names[i], values[i]);
 }
 
-void write_pixels(const char* file, const OIIO::ImageSpec& spec, OIIO::TypeDesc format, const void* data) {
-    const auto out = OIIO::ImageOutput::create(file);
+/// libjpeg ends the program when a file cannot be written: JPEG goes to memory first. It has to outlive the output.
+class InMemory {
+public:
+    void take(OIIO::ImageOutput& out) {
+        used_ = std::strcmp(out.format_name(), "jpeg") == 0 && out.supports("ioproxy");
+        if (used_) out.set_ioproxy(&bytes_);
+    }
+    /// After the output was closed.
+    void store(const char* file) const {
+        if (!used_) return;
+        std::ofstream to(file, std::ios::binary | std::ios::trunc);
+        to.write(reinterpret_cast<const char*>(bytes_.buffer().data()), static_cast<std::streamsize>(bytes_.buffer().size()));
+        if (!to.flush()) throw std::runtime_error(std::strerror(errno));
+    }
+
+private:
+    OIIO::Filesystem::IOVecOutput bytes_;
+    bool used_ = false;
+};
+
+void write_pixels(const char* file, const char* type, const OIIO::ImageSpec& spec, OIIO::TypeDesc format, const void* data) {
+    InMemory memory;
+    const auto out = OIIO::ImageOutput::create(type);
     if (!out) throw std::runtime_error(reason(OIIO::geterror()));
+    memory.take(*out);
     if (!out->open(file, spec) || !out->write_image(format, data)) throw std::runtime_error(reason(out->geterror()));
     if (!out->close() || out->has_error()) throw std::runtime_error(reason(out->geterror()));
+    memory.store(file);
 }
 
-void write_layers(const char* file, const IsoparmImagePixels& p, const char* const* names, const char* const* values, int metadata) {
+void write_layers(const char* file, const char* type, const IsoparmImagePixels& p, const char* const* names, const char* const* values, int metadata) {
     const std::vector<float> data = all_channels(p);
     OIIO::ImageSpec spec(p.width, p.height, p.channels + p.layers, OIIO::TypeDesc::FLOAT);
     spec.channelnames.resize(p.channels);  // R, G, B and perhaps A
@@ -139,16 +175,16 @@ void write_layers(const char* file, const IsoparmImagePixels& p, const char* con
     spec.channelformats.resize(spec.nchannels, OIIO::TypeDesc::FLOAT);
     spec.attribute("oiio:ColorSpace", "Linear");
     set_metadata(spec, names, values, metadata);
-    write_pixels(file, spec, OIIO::TypeDesc::FLOAT, data.data());
-    const auto in = opened(file);
+    write_pixels(file, type, spec, OIIO::TypeDesc::FLOAT, data.data());
+    const auto in = opened_as(file, type);
     const bool same_size = in->spec().width == p.width && in->spec().height == p.height && in->spec().nchannels == spec.nchannels;
     if (!same_size || in_order(floats(*in), in->spec().channelnames, spec.channelnames) != data)
         throw std::runtime_error("the file does not read back as it was written; is the disk full?");
 }
 
-void write(const char* file, const IsoparmImagePixels& p, bool lossy, const char* const* names,
+void write(const char* file, const char* type, const IsoparmImagePixels& p, bool lossy, const char* const* names,
            const char* const* values, int metadata) {
-    if (p.layers > 0) return write_layers(file, p, names, values, metadata);
+    if (p.layers > 0) return write_layers(file, type, p, names, values, metadata);
     const OIIO::TypeDesc format = p.half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8;
     const std::size_t count = std::size_t(p.width) * p.height * p.channels;
     std::vector<unsigned char> halves;
@@ -163,8 +199,8 @@ void write(const char* file, const IsoparmImagePixels& p, bool lossy, const char
     if (!p.half) spec.attribute("oiio:UnassociatedAlpha", 1);
     if (lossy) spec.attribute("Compression", "jpeg:95");
     set_metadata(spec, names, values, metadata);
-    write_pixels(file, spec, format, data);
-    check_written(file, p, data, format, lossy);  // 2.4.7 reports success for PNG on a full disk
+    write_pixels(file, type, spec, format, data);
+    check_written(file, type, p, data, format, lossy);  // 2.4.7 reports success for PNG on a full disk
 }
 
 void read(const char* file, IsoparmImageSink sink, void* user) {
@@ -320,7 +356,8 @@ OIIO::ImageSpec spec_of(const IsoparmImageLayer& l) {
 }  // namespace
 
 struct IsoparmImageWriter {
-    std::string name;
+    std::string name, format;
+    InMemory memory;
     std::unique_ptr<OIIO::ImageOutput> out;
     std::vector<OIIO::ImageSpec> specs;
     int open = -1;
@@ -362,8 +399,8 @@ void put_rows(IsoparmImageWriter& w, int layer, int first, int rows, const float
 }
 
 /// 2.4.7 reports success for PNG on a full disk.
-void read_back(const std::string& name) {
-    const auto in = opened(name.c_str());
+void read_back(const std::string& name, const std::string& format) {
+    const auto in = opened_as(name.c_str(), format.c_str());
     for (int s = 0; in->seek_subimage(s, 0); ++s) {
         const OIIO::ImageSpec spec = in->spec();
         std::vector<float> rows(std::size_t(spec.width) * spec.nchannels * 64);
@@ -373,9 +410,9 @@ void read_back(const std::string& name) {
 
 }  // namespace
 
-int isoparm_image_write(const char* file, const IsoparmImagePixels* pixels, int lossy, const char* const* names,
+int isoparm_image_write(const char* file, const char* format, const IsoparmImagePixels* pixels, int lossy, const char* const* names,
                         const char* const* values, int metadata, IsoparmImageError* error) {
-    return guarded(error, [&] { write(file, *pixels, lossy != 0, names, values, metadata); });
+    return guarded(error, [&] { write(file, format, *pixels, lossy != 0, names, values, metadata); });
 }
 
 int isoparm_image_read(const char* file, IsoparmImageSink sink, void* user, IsoparmImageError* error) {
@@ -385,11 +422,7 @@ int isoparm_image_read(const char* file, IsoparmImageSink sink, void* user, Isop
 IsoparmImageFile* isoparm_image_open(const char* file, const char* format, IsoparmImageError* error) {
     auto f = std::make_unique<IsoparmImageFile>();
     const int failed = guarded(error, [&] {
-        f->in = OIIO::ImageInput::create(format);
-        if (!f->in) throw std::runtime_error(reason(OIIO::geterror()));
-        OIIO::ImageSpec as_stored, found;
-        as_stored.attribute("oiio:UnassociatedAlpha", 1);
-        if (!f->in->open(file, found, as_stored)) throw std::runtime_error(reason(f->in->geterror()));
+        f->in = opened_as(file, format);
         find_parts(*f);
     });
     return failed ? nullptr : f.release();
@@ -406,12 +439,13 @@ int isoparm_image_rows(IsoparmImageFile* file, int number, int first, int rows, 
 
 void isoparm_image_close(IsoparmImageFile* file) { delete file; }
 
-IsoparmImageWriter* isoparm_image_create(const char* file, const IsoparmImageLayer* layers, int count, IsoparmImageError* error) {
+IsoparmImageWriter* isoparm_image_create(const char* file, const char* format, const IsoparmImageLayer* layers, int count, IsoparmImageError* error) {
     auto w = std::make_unique<IsoparmImageWriter>();
     const int failed = guarded(error, [&] {
-        w->name = file;
-        w->out = OIIO::ImageOutput::create(file);
+        w->name = file, w->format = format;
+        w->out = OIIO::ImageOutput::create(format);
         if (!w->out) throw std::runtime_error(reason(OIIO::geterror()));
+        w->memory.take(*w->out);
         for (int i = 0; i < count; ++i) w->specs.push_back(spec_of(layers[i]));
         go_to(*w, 0);
     });
@@ -426,7 +460,8 @@ int isoparm_image_finish(IsoparmImageWriter* file, IsoparmImageError* error) {
     const std::unique_ptr<IsoparmImageWriter> w(file);
     return guarded(error, [&] {
         if (!w->out->close() || w->out->has_error()) throw std::runtime_error(reason(w->out->geterror()));
-        read_back(w->name);
+        w->memory.store(w->name.c_str());
+        read_back(w->name, w->format);
     });
 }
 

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <string_view>
 
 #include "suggest.h"
@@ -172,6 +173,7 @@ static void rethrow_syntax(const JsonDocument& document, const std::string& mess
     const std::size_t begin = messages.find("\n  ", at);
     std::string what = begin == std::string::npos ? messages : messages.substr(begin + 3, messages.find('\n', begin + 3) - begin - 3);
     if (what.size() > 200) what = what.substr(0, 200) + "...";
+    if (what.find("Failed to allocate") != std::string::npos) throw std::bad_alloc();
     if (what.rfind("Duplicate key", 0) == 0) what = "found a key for the second time (" + what + "), expected every key once";
     else {
         const std::size_t end = std::min(document.text.find_first_of("\n\r", offset), document.text.size());

@@ -80,6 +80,7 @@ int run(std::vector<std::string> arguments) {
 }  // namespace
 
 int main(int count, char** words) {
+    tell_crashes();
     std::ios::sync_with_stdio(false);
     std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond a limit is an error with a message
     return guarded([&] {

@@ -88,6 +88,20 @@ TEST(BadScenes, AnImportedFileMustBeARegularOne) {
         EXPECT_NE(o.err.find("scene.json:1:52: at $.surfaces.S.path: found a " + name), std::string::npos) << o.err;
     }
 }
+TEST(BadScenes, ImportedFilesLieBelowTheScene) {
+    const TemporaryFolder t;
+    std::filesystem::create_directories(t / "scene/below");
+    const std::string teapot = read_all(test::source_folder() + "/tests/fuzz/corpus/teapot_part.bv");
+    write_all(t / "outside.bv", teapot), write_all(t / "scene/below/a.bv", teapot);
+    std::filesystem::create_symlink("../outside.bv", t / "scene/link.bv");
+    const auto told = [&](const std::string& name) {
+        write_all(t / "scene/s.json", "{\"isoparm\":1,\"surfaces\":{\"S\":{\"type\":\"file\",\"path\":\"" + name + "\"}}}");
+        return run("info s.json", t / "scene").err;
+    };
+    for (const std::string& name : {std::string("../outside.bv"), t / "outside.bv", std::string("below/../../outside.bv"), std::string("link.bv")})
+        EXPECT_NE(told(name).find("s.json:1:52: at $.surfaces.S.path: found \"" + name + "\", expected a file in the scene's folder or below it"), std::string::npos) << told(name);
+    for (const std::string name : {"below/a.bv", "./below/../below/a.bv"}) EXPECT_EQ(told(name).find("expected a file in the scene's folder"), std::string::npos) << told(name);
+}
 TEST(BadScenes, AMissingSceneIsAnInputOutputError) {
     const Outcome o = run("info nothing.json");
     EXPECT_EQ(o.code, 4);

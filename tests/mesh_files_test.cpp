@@ -141,16 +141,30 @@ TEST(AtomicFile, SaysWhyItCannotWrite) {
         EXPECT_EQ(kind_of([&] { write_atomically("/dev/full", text); }, "No space left on device"), ErrorKind::io);
     }
 }
-TEST(AtomicFile, ByNameKeepsTheExtension) {
+TEST(AtomicFile, ByNameAnotherLibraryWrites) {
     const TemporaryFolder t;
-    std::string temporary;
     write_atomically_by_name(t / "a.png", [&](const std::string& name) {
-        temporary = name;
+        EXPECT_NE(name, t / "a.png");
         write_all(name, "x");
     });
-    EXPECT_EQ(std::filesystem::path(temporary).extension(), ".png");
     EXPECT_EQ(read_all(t / "a.png"), "x");
     EXPECT_EQ(t.files(), 1u);
+}
+/// As libjpeg ends the program that cannot write.
+TEST(AtomicFile, AnExitWithinRemovesTheTemporary) {
+    const TemporaryFolder t;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        write_atomically(t / "a", [](std::ostream& out) {
+            out << "half" << std::flush;
+            std::exit(0);
+        });
+        ::_exit(1);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+    EXPECT_EQ(t.files(), 0u);
 }
 TEST(AtomicFile, ASignalRemovesTheTemporary) {
     const TemporaryFolder t;

@@ -53,10 +53,10 @@ struct Outcome {
     int code;
     std::string out, err;
 };
-/// `arguments` is shell text; runs in `folder` when it is not empty.
-inline Outcome run(const std::string& arguments, const std::string& folder = "") {
+/// `arguments` is shell text; runs in `folder` when it is not empty; `before` stands before the program ("env A=b", "ulimit -v 9 &&").
+inline Outcome run(const std::string& arguments, const std::string& folder = "", const std::string& before = "") {
     const TemporaryFolder t;
-    const std::string command = (folder.empty() ? "" : "cd '" + folder + "' && ") + "'" + program() + "' " + arguments + " >'" + t / "out" + "' 2>'" + t / "err" + "' </dev/null";
+    const std::string command = (folder.empty() ? "" : "cd '" + folder + "' && ") + before + " '" + program() + "' " + arguments + " >'" + t / "out" + "' 2>'" + t / "err" + "' </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_all(t / "out"), read_all(t / "err")};
 }

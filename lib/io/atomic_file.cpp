@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -31,17 +32,18 @@ constexpr int kSlots = 16;
 constexpr std::size_t kNameLength = 4096;
 struct Slot {
     std::atomic<bool> used{false}, ready{false};
+    pid_t owner;  // a child that was forked meanwhile leaves it alone
     char name[kNameLength];
 };
 Slot slots[kSlots];
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 std::mutex handlers_mutex;
 int handlers_users = 0;
+bool exit_is_watched = false;  // libjpeg ends the program when it cannot write
 struct sigaction handlers_before[std::size(kSignals)];
 
 extern "C" void isoparm_remove_temporaries(int signal) {
-    for (Slot& s : slots)
-        if (s.ready.load()) ::unlink(s.name);
+    remove_temporaries();
     ::signal(signal, SIG_DFL);
     ::raise(signal);
 }
@@ -50,6 +52,7 @@ extern "C" void isoparm_remove_temporaries(int signal) {
 void install_handlers() {
     const std::lock_guard lock(handlers_mutex);
     if (handlers_users++ > 0) return;
+    if (!exit_is_watched) exit_is_watched = std::atexit(remove_temporaries) == 0;
     for (std::size_t i = 0; i < std::size(kSignals); ++i) {
         ::sigaction(kSignals[i], nullptr, &handlers_before[i]);
         if (handlers_before[i].sa_handler != SIG_DFL) continue;
@@ -74,6 +77,7 @@ public:
         for (Slot& s : slots) {
             if (s.used.exchange(true)) continue;
             std::memcpy(s.name, name.c_str(), name.size() + 1);
+            s.owner = ::getpid();
             s.ready = true;
             slot_ = &s;
             return;
@@ -95,50 +99,57 @@ private:
 
 // ---- the temporary --------------------------------------------------------------------------------------------------
 
-/// Created empty, with the permissions of the file that it will replace; removed unless it was renamed.
+/// Created empty, with the permissions of the file that it will replace. It has no name until it is whole, so that not even SIGKILL
+/// leaves it; on file systems that know no files without names (O_TMPFILE) it has one from the start, and is removed unless it was renamed.
 class Temporary {
 public:
-    Temporary(const std::string& path, const std::string& extension) : path_(path), name_(unused_name(path, extension)), guard_(name_) {
+    explicit Temporary(const std::string& path) : path_(path), name_(unused_name(path)), guard_(name_) {
+        file_ = ::open(folder().c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+        unnamed_ = file_ >= 0 && ::access(descriptor().c_str(), W_OK) == 0;  // is /proc there?
+        if (!unnamed_) {
+            if (file_ >= 0) ::close(file_);
+            file_ = ::open(name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        }
+        if (file_ < 0) fail(path, "cannot create a file in its folder", errno);
         struct stat old {};
-        const bool replaces = ::stat(path.c_str(), &old) == 0;
-        const int file = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file < 0) fail(path, "cannot create a file in its folder", errno);
-        if (replaces && ::fchmod(file, old.st_mode & 07777) != 0) { /* another's file: keeps the usual permissions */ }
-        ::close(file);
+        if (::stat(path.c_str(), &old) == 0 && ::fchmod(file_, old.st_mode & 07777) != 0) { /* another's file: keeps the usual permissions */ }
     }
     ~Temporary() {
+        ::close(file_);
         if (!renamed_) ::unlink(name_.c_str());
     }
     Temporary(const Temporary&) = delete;
     Temporary& operator=(const Temporary&) = delete;
-    const std::string& name() const { return name_; }
+    /// To be opened and written.
+    std::string name() const { return unnamed_ ? descriptor() : name_; }
 
     void sync_and_rename() {
-        const int file = ::open(name_.c_str(), O_RDONLY | O_CLOEXEC);
-        if (file < 0) fail(path_, "the file that was written is gone", errno);
-        const int error = ::fsync(file) == 0 ? 0 : errno;
-        ::close(file);
+        const int error = ::fsync(file_) == 0 ? 0 : errno;
         if (error != 0 && error != EINVAL && error != ENOTSUP) fail(path_, "writing failed", error);
+        if (unnamed_ && ::linkat(AT_FDCWD, descriptor().c_str(), AT_FDCWD, name_.c_str(), AT_SYMLINK_FOLLOW) != 0) fail(path_, "cannot be made in its folder", errno);
         if (::rename(name_.c_str(), path_.c_str()) != 0) fail(path_, "cannot be replaced", errno);
         renamed_ = true;
-        const std::string folder = fs::path(path_).has_parent_path() ? fs::path(path_).parent_path().string() : ".";
-        const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        const int directory = ::open(folder().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (directory < 0) return;  // a folder that may be written but not read: the rename itself has succeeded
-        ::fsync(directory);
+        const int failed = ::fsync(directory) == 0 ? 0 : errno;
         ::close(directory);
+        if (failed != 0 && failed != EINVAL && failed != ENOTSUP) fail(path_, "was written, but its folder cannot be synced", failed);
     }
 
 private:
-    static std::string unused_name(const std::string& path, const std::string& extension) {
+    std::string folder() const { return fs::path(path_).has_parent_path() ? fs::path(path_).parent_path().string() : "."; }
+    std::string descriptor() const { return "/proc/self/fd/" + std::to_string(file_); }
+    static std::string unused_name(const std::string& path) {
         static std::atomic<unsigned> count{0};
         for (;;) {
-            const std::string name = path + ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(count++) + extension;
+            const std::string name = path + ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
             struct stat found {};
             if (::lstat(name.c_str(), &found) != 0) return name;
         }
     }
     std::string path_, name_;
-    bool renamed_ = false;
+    int file_ = -1;
+    bool unnamed_ = false, renamed_ = false;
     RemovedOnSignal guard_;
 };
 
@@ -173,10 +184,15 @@ bool is_device(const std::string& path) {
 
 }  // namespace
 
+void remove_temporaries() {
+    for (Slot& s : slots)
+        if (s.ready.load() && s.owner == ::getpid()) ::unlink(s.name);
+}
+
 void write_atomically(const std::string& path, const std::function<void(std::ostream&)>& write) {
     const std::string target = target_of(path);
     if (is_device(path)) return write_stream(path, path, write);
-    Temporary temporary(target, "");
+    Temporary temporary(target);
     write_stream(path, temporary.name(), write);
     temporary.sync_and_rename();
 }
@@ -184,7 +200,7 @@ void write_atomically(const std::string& path, const std::function<void(std::ost
 void write_atomically_by_name(const std::string& path, const std::function<void(const std::string&)>& write) {
     const std::string target = target_of(path);
     if (is_device(path)) return write(path);
-    Temporary temporary(target, fs::path(path).extension().string());
+    Temporary temporary(target);
     write(temporary.name());
     temporary.sync_and_rename();
 }

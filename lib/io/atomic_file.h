@@ -5,9 +5,12 @@
 #include <string>
 
 namespace isoparm {
-/// `write` fills the temporary file PATH.tmp-<pid>-<n> in the same folder; it is then flushed, checked, synced and
-/// renamed to `path`. On any failure the temporary is removed, the old file is as it was, and Error(io) says why.
+/// `write` fills a temporary file in the same folder, without a name where the file system offers that (else PATH.tmp-<pid>-<n>); it is
+/// then flushed, checked, synced, named and renamed to `path`. On any failure it is removed, the old file is as it was, and Error(io) says
+/// why. A program that is killed between naming and renaming (microseconds), or on a file system without O_TMPFILE, leaves PATH.tmp-*.
 void write_atomically(const std::string& path, const std::function<void(std::ostream&)>& write);
-/// The same when another library does the writing: `write` gets the temporary's name (with the extension of `path`).
+/// The same when another library does the writing: `write` gets a name of the temporary to open: its extension says nothing.
 void write_atomically_by_name(const std::string& path, const std::function<void(const std::string&)>& write);
+/// Removes what the process has not finished: before a crash ends it. May be called in a signal handler.
+void remove_temporaries();
 }

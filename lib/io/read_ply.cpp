@@ -39,6 +39,7 @@ public:
             else if (e.name == "face") faces(e);
             else pass_over(e);
         }
+        refuse_surplus();
         return std::move(file_);
     }
 
@@ -124,6 +125,16 @@ private:
         if (e.count > 0 && least > 0 && e.count > left / least)
             throw_input(path_ + ": byte " + std::to_string(ascii_ ? text_.offset() : binary_.offset()) + ": found " + std::to_string(e.count) + " elements " + in_quotes(e.name) + " announced and " +
                         std::to_string(ascii_ ? text_.left() : left) + " bytes left, expected at least " + std::to_string(e.count * least) + " bytes");
+    }
+    /// What follows was perhaps meant to be read: a count that is too small. Blanks are let pass.
+    void refuse_surplus() {
+        if (ascii_) {
+            if (const auto w = text_.word(); !w.empty()) text_.fail_word(w, "the end of the file, after the last element that the header announces");
+            return;
+        }
+        const std::size_t more = bytes_.find_first_not_of(" \t\r\n", binary_.offset());
+        if (more != std::string::npos)
+            throw_input(path_ + ": byte " + std::to_string(binary_.offset()) + ": found " + std::to_string(binary_.left()) + " bytes after the last element, expected the end of the file: the header announces fewer than there are");
     }
     double number(Scalar type, const char* expected) {
         if (ascii_) return text_.number(text_.word(), expected);

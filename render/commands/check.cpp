@@ -246,6 +246,7 @@ int run(const std::vector<std::string>& arguments) {
     r.selection = select_patches(scene, options);
     ContinuityOptions& how = r.options;
     how.size = finite_diagonal(scene, bounding_box(r.selection.patches));
+    if (how.size == 0) throw_input(scene.place + ": found surfaces of size 0, expected some that have edges to check");
     how.tolerance = tolerance ? absolute_tolerance(*tolerance, how.size, options) : 1e-9 * how.size;
     how.capture = !capture ? 1e-2 * how.size : *capture == "0" ? 0 : absolute_tolerance(parse_tolerance(*capture), how.size, options);
     how.curvature = how.tolerance / (how.size * how.size);

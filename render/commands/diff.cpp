@@ -292,15 +292,17 @@ int run(const std::vector<std::string>& arguments) {
     std::error_code ignored;
     const bool made = options.has("--update") && !fs::exists(a, ignored);
     const bool folders = fs::is_directory(made ? b : a, ignored);
-    for (const std::string& path : {a, b})
-        if (!fs::exists(path, ignored) && !(made && path == a)) throw Error(ErrorKind::io, path + ": there is no such file or folder");
-    if (folders != fs::is_directory(b, ignored)) options.fail("found a folder and a file, expected two images or two folders");
+    const std::string missing = !fs::exists(a, ignored) && !made ? a : !fs::exists(b, ignored) ? b : "";
+    if (missing.empty() && folders != fs::is_directory(b, ignored)) options.fail("found a folder and a file, expected two images or two folders");
     const DiffRequest request = read_request(options);
     check_files(options, request, a, b, folders);
-    if (options.has("--update") && !folders) check_format(options, a, b);
+    if (options.has("--update") && !folders && missing.empty()) check_format(options, a, b);
 
     std::vector<ImageDiff> all;
-    if (folders) all = compare_folders(a, b, request, options);
+    if (!missing.empty()) {
+        all.push_back(problem(a, b, DiffVerdict::unreadable, missing + ": there is no such file or folder"));
+        tell(all.front(), request, options);
+    } else if (folders) all = compare_folders(a, b, request, options);
     else {
         all.push_back(compare_files(a, b, request));
         make_figures(all.front());
@@ -310,7 +312,7 @@ int run(const std::vector<std::string>& arguments) {
     if (options.has("--json")) std::cout << (folders ? diff_json(all) : diff_json(all.front())) << "\n";
     if (options.has("--junit")) write_report(options, "--junit", diff_junit(all, request.limits));
     if (options.has("--html")) write_report(options, "--html", diff_page(all, request.limits));
-    if (folders && !output_is_taken(options) && !options.quiet() && !options.has("-q")) std::cout << summary(all) << "\n";
+    if (folders && missing.empty() && !output_is_taken(options) && !options.quiet() && !options.has("-q")) std::cout << summary(all) << "\n";
     return exit_code(worst_of(all), options.has("--mismatch-fails"));
 }
 

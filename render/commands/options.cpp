@@ -151,9 +151,9 @@ Composite find_patches(const Scene& scene, const std::string& name) {
 
 double finite_diagonal(const Scene& scene, const Bounds& box) {
     const double size = box.diagonal();
-    if (std::isfinite(size)) return size;
+    if (size == 0 || (size > 1e-70 && size < 1e70)) return size;
     const auto text = [](const Point& p) { return "(" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + ")"; };
-    throw_input(scene.place + ": found surfaces of size " + to_text(size) + ", from " + text(box.low) + " to " + text(box.high) + ", expected a diagonal below 1e154");
+    throw_input(scene.place + ": found surfaces of size " + to_text(size) + ", from " + text(box.low) + " to " + text(box.high) + ", expected a diagonal between 1e-70 and 1e70; scale the data");
 }
 
 }  // namespace isoparm

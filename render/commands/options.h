@@ -64,7 +64,7 @@ void print_notes(const Scene& scene);
 /// The patches of one surface ("S"), or one of them ("S/member"). Throws Error(usage) that lists what there is.
 Composite find_patches(const Scene& scene, const std::string& name);
 
-/// The diagonal of a box about what will be meshed. Throws Error(input) when it is beyond the numbers of the machine.
+/// The diagonal of a box about what will be meshed: 0, or between 1e-70 and 1e70. Throws Error(input) that names the scene when it is another.
 double finite_diagonal(const Scene& scene, const Bounds& box);
 
 }  // namespace isoparm

@@ -6,6 +6,7 @@
 
 #include "certificate_file.h"
 #include "commands/selection.h"
+#include "error.h"
 #include "io/mesh_reader.h"
 #include "json.h"
 #include "json_text.h"
@@ -84,6 +85,18 @@ void print_json(const Report& r) {
     out << "]}\n";
 }
 
+/// Parameters and surface that the scene does not have are damage of the certificate, not of the command line.
+std::pair<Scene, Selection> named_by(const Report& r, const Options& options) {
+    try {
+        Scene scene = options.scene_at(r.scene, r.file.parameters);
+        Selection selection = select_patches(scene, r.file.surface);
+        return {std::move(scene), std::move(selection)};
+    } catch (const Error& e) {
+        if (e.kind() != ErrorKind::usage) throw;
+        throw Error(ErrorKind::input, r.path + ": names what " + r.scene + " does not have: " + e.what());
+    }
+}
+
 }  // namespace
 
 int verify_certificate(const Options& options) {
@@ -100,8 +113,7 @@ int verify_certificate(const Options& options) {
     if (const std::string digest = sha256(read_text_file(r.scene)); digest != r.file.sha256) {
         r.check.faults.push_back(r.scene + " is not the scene that the certificate is of, " + r.file.scene + " of sha256 " + r.file.sha256);
     } else {
-        const Scene scene = options.scene_at(r.scene, r.file.parameters);
-        const Selection selection = select_patches(scene, r.file.surface);
+        const auto [scene, selection] = named_by(r, options);
         if (tolerance) r.limit = absolute_tolerance(*tolerance, finite_diagonal(scene, bounding_box(selection.patches)), options);
         ProgressBar bar("checking", options.quiet());
         r.check = check_certificate(selection.patches, c, 5000, std::ref(bar));
