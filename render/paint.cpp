@@ -34,10 +34,9 @@ void paint(const Drawing& drawing, int left, int top, Image& image) {
             [&](auto shape) {
                 move(shape, left, top);
                 if constexpr (std::is_same_v<decltype(shape), Text>) {
-                    // The rim of a faint text is fainter still: a hidden label does not bleach what hides it.
                     if (shape.halo > 0)
                         add(coverage(shape, shape.halo, image.width, image.height), white,
-                            0.85 * item.opacity * item.opacity, image);
+                            halo_opacity(item.opacity), image);
                     add(coverage(shape, 0, image.width, image.height), item.color, item.opacity, image);
                 } else {
                     add(coverage(shape, image.width, image.height), item.color, item.opacity, image);

@@ -232,8 +232,16 @@ struct Quality {
     Tolerance tolerance;
     double pixel;  // pixels of this picture to one of the scene's
     std::vector<Aov> aovs;
-    bool exact;
+    bool exact, vectors;
 };
+
+/// Puts a drawing over a picture; (x,y) is where its pixels begin there.
+void put_over(Drawing drawing, int x, int y, int width, int height, bool vectors, Picture& picture) {
+    if (vectors)
+        picture.drawn.push_back({std::move(drawing), x, y, width, height});
+    else
+        paint(drawing, -x, -y, picture.image);
+}
 
 /// The part `area` of a view, in the view's own pixels.
 Picture render_view(const Scene& scene, const View& view, const Area& area, const Quality& how,
@@ -260,7 +268,7 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     trace(Tracer(traced, camera, how.samples, scene.image.background), AovReader(scene, traced, camera, how.aovs), area,
           part_of_progress(kMeshShare, 1 - kMeshShare), picture);
     picture.rays = traced.embree->count();
-    paint(overlay(scene, view.objects, traced, camera, how.pixel, view.letter), area.x0, area.y0, picture.image);
+    put_over(overlay(scene, view.objects, traced, camera, how.pixel, view.letter), -area.x0, -area.y0, view.width, view.height, how.vectors, picture);
     picture.seconds_trace = seconds_since(start);
     return picture;
 }
@@ -285,13 +293,18 @@ void paste(const Picture& part, int x0, int y0, Picture& whole) {
 
 Picture render(const Scene& scene, const RenderOptions& options) {
     const int width = checked_size(options.width ? options.width : scene.image.width, "width", kLargestSize);
-    const int height = checked_size(options.height ? options.height : scene.image.height, "height", kLargestSize);
+    const int height = checked_size(options.height  ? options.height
+                                    : options.width ? static_cast<int>(std::lround(static_cast<double>(width) * scene.image.height / scene.image.width))
+                                                    : scene.image.height,
+                                    "height", kLargestSize);
     const Area area = checked_area(options, width, height);
     const Quality how{
         checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples),
-        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs, options.exact};
+        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs, options.exact, options.vectors};
     double reached = 0;  // progress never runs backwards, whatever its parts report
-    const auto views = views_of(scene, width, height, options.also_fit);
+    std::optional<double> letter;
+    if (options.letter_points) letter = *options.letter_points * options.pixels_per_point;
+    const auto views = views_of(scene, width, height, options.also_fit, letter);
     Picture all;
     all.exact = options.exact;
     all.image = blank(area.width(), area.height(), scene.image.background);
@@ -309,6 +322,10 @@ Picture render(const Scene& scene, const RenderOptions& options) {
         const Picture one =
             render_view(scene, v, {seen.x0 - v.x, seen.y0 - v.y, seen.x1 - v.x, seen.y1 - v.y}, how, progress);
         paste(one, seen.x0 - area.x0, seen.y0 - area.y0, all);
+        for (DrawnPart part : one.drawn) {
+            part.x += seen.x0 - area.x0, part.y += seen.y0 - area.y0;
+            all.drawn.push_back(std::move(part));
+        }
         all.tolerance = std::max(all.tolerance, one.tolerance);
         all.certified_error = std::max(all.certified_error, one.certified_error);
         all.triangles += one.triangles;
@@ -318,7 +335,7 @@ Picture render(const Scene& scene, const RenderOptions& options) {
         all.seconds_mesh += one.seconds_mesh;
         all.seconds_trace += one.seconds_trace;
     }
-    paint(titles_of(scene, views), area.x0, area.y0, all.image);
+    put_over(titles_of(scene, views), -area.x0, -area.y0, width, height, options.vectors, all);
     return all;
 }
 

@@ -4,6 +4,7 @@
 #include "commands/frames.h"
 #include "commands/output.h"
 #include "commands/render_options.h"
+#include "paper.h"
 #include "progress.h"
 
 namespace isoparm {
@@ -33,21 +34,25 @@ surfaces. The same scene gives the same bytes, for every number of threads and a
 --quiet           no messages; --threads N  at most N threads
 )";
 
-void render_one(const Scene& scene, const std::string& output, RenderOptions how, bool quiet) {
+void render_one(const Scene& scene, const std::string& output, RenderOptions how, const Options& options) {
+    const bool quiet = options.quiet();
     finite_diagonal(scene, bounding_box(scene));
+    how = rendering_of(std::move(how), output);
     const Picture picture = [&] {
         ProgressBar bar("rendering", quiet);
         how.progress = std::ref(bar);
         return render(scene, how);
     }();
-    write_image(output, picture.image, picture.layers, metadata_of(scene, picture));
+    write_picture(options, output, scene, how, picture);
     if (!quiet) std::fprintf(stderr, "%s: %s\n", output.c_str(), summary_of(picture).c_str());
 }
 
 int run(const std::vector<std::string>& arguments) {
-    const Options options("render", arguments,
+    std::vector<Options::Known> known = paper_options();
+    known.insert(known.end(),
                           {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}, {"--crop", true}, {"--set", true}, {"--reproducible", false}, {"--frames", true}, {"--animate", true},
                            {"--exact", false}, {"--aov", true}});
+    const Options options("render", arguments, known);
     const std::string output = options.required("-o", "the image file to write");
     RenderOptions how = read_render_options(options);
     how.aovs = read_aovs(options, output);
@@ -55,12 +60,14 @@ int run(const std::vector<std::string>& arguments) {
     if (options.has("--frames") || options.has("--animate")) {
         const auto frames = frames_of(options, output);
         how.also_fit = points_of(frames, options);
-        for (const Frame& f : frames) render_one(options.scene(f.parameters), f.path, how, options.quiet());
+        for (const Frame& f : frames) render_one(options.scene(f.parameters), f.path, how, options);
         return kSuccess;
     }
-    check_image_path(output);
-    check_outputs(options, {{"-o", output}}, {{"SCENE", options.scene_path()}});
-    render_one(options.scene(), output, how, options.quiet());
+    check_picture_path(options, output);
+    std::vector<NamedFile> files;
+    for (const std::string& file : paper_files(output)) files.push_back({"-o", file});
+    check_outputs(options, files, {{"SCENE", options.scene_path()}});
+    render_one(options.scene(), output, how, options);
     return kSuccess;
 }
 
