@@ -17,6 +17,7 @@ struct Polyline {
     double width = 1;
     std::vector<double> dash;  // lengths on, off, on, ...; empty: not dashed
     bool round = true;         // ends; corners always are
+    std::vector<std::vector<Vec2>> more{};  // further lines, drawn as one with it: where they cross, they are no darker
 };
 struct Filled {
     std::vector<Vec2> outline;  // closed

@@ -19,6 +19,8 @@ void add(const Coverage& c, const Vec3<double>& color, double opacity, Image& im
 Vec2 moved(const Vec2& p, int left, int top) { return {p.x - left, p.y - top}; }
 void move(Polyline& line, int left, int top) {
     for (Vec2& p : line.points) p = moved(p, left, top);
+    for (auto& other : line.more)
+        for (Vec2& p : other) p = moved(p, left, top);
 }
 void move(Filled& area, int left, int top) {
     for (Vec2& p : area.outline) p = moved(p, left, top);

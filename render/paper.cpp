@@ -41,6 +41,7 @@ double under(const std::vector<Vec2>& points, const DrawnPart& part, const Image
 }
 std::vector<Vec2> points_of(const Polyline& line) {
     std::vector<Vec2> points = line.points;
+    for (const auto& other : line.more) points.insert(points.end(), other.begin(), other.end());
     for (std::size_t i = 0; i + 1 < line.points.size(); ++i)  // long straight lines have few points of their own
         for (const double t : {0.25, 0.5, 0.75})
             points.push_back({(1 - t) * line.points[i].x + t * line.points[i + 1].x, (1 - t) * line.points[i].y + t * line.points[i + 1].y});

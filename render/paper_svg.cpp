@@ -42,7 +42,9 @@ std::string path_of(const std::vector<Vec2>& points) {
 void add(const Polyline& line, const DrawingItem& item, bool, std::string& out) {
     std::string dash;
     for (const double d : line.dash) dash += (dash.empty() ? "" : " ") + number(d);
-    out += "<path d=\"" + path_of(line.points) + "\" fill=\"none\" stroke=\"" + color_of(item.color) + "\" stroke-width=\"" + number(line.width) + "\" stroke-linecap=\"" +
+    std::string d = path_of(line.points);
+    for (const auto& other : line.more) d += path_of(other);
+    out += "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + color_of(item.color) + "\" stroke-width=\"" + number(line.width) + "\" stroke-linecap=\"" +
            (line.round ? "round" : "butt") + "\" stroke-linejoin=\"round\"" + (dash.empty() ? "" : " stroke-dasharray=\"" + dash + "\"") +
            with_opacity("stroke-opacity", item.opacity) + "/>\n";
 }

@@ -62,6 +62,7 @@ private:
         }
         out_ += "]";
         path(line.points);
+        for (const auto& other : line.more) path(other);
         out_ += ";\n";
     }
     void add(const Filled& area, const DrawingItem& item) {

@@ -256,7 +256,7 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     picture.tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
     auto start = std::chrono::steady_clock::now();
     TracedScene traced = build_traced_scene(scene, view.objects, picture.tolerance, part_of_progress(0, kMeshShare), how.exact);
-    for (Thing& thing : traced.things) thing.isolines.width *= how.pixel;
+    for (Thing& thing : traced.things) thing.isolines.width = how.vectors ? 0 : thing.isolines.width * how.pixel;
     picture.certified_error = traced.certified_error;
     picture.triangles = traced.triangles;
     for (const ExactPatch& p : traced.patches) picture.leaves += p.leaves();
@@ -268,7 +268,7 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     trace(Tracer(traced, camera, how.samples, scene.image.background), AovReader(scene, traced, camera, how.aovs), area,
           part_of_progress(kMeshShare, 1 - kMeshShare), picture);
     picture.rays = traced.embree->count();
-    put_over(overlay(scene, view.objects, traced, camera, how.pixel, view.letter), -area.x0, -area.y0, view.width, view.height, how.vectors, picture);
+    put_over(overlay(scene, view.objects, traced, camera, how.pixel, view.letter, how.vectors), -area.x0, -area.y0, view.width, view.height, how.vectors, picture);
     picture.seconds_trace = seconds_since(start);
     return picture;
 }
@@ -304,7 +304,8 @@ Picture render(const Scene& scene, const RenderOptions& options) {
     double reached = 0;  // progress never runs backwards, whatever its parts report
     std::optional<double> letter;
     if (options.letter_points) letter = *options.letter_points * options.pixels_per_point;
-    const auto views = views_of(scene, width, height, options.also_fit, letter);
+    auto views = views_of(scene, width, height, options.also_fit, letter);
+    for (View& v : views) set_points(v.objects, options.pixels_per_point / how.pixel);
     Picture all;
     all.exact = options.exact;
     all.image = blank(area.width(), area.height(), scene.image.background);

@@ -118,6 +118,15 @@ void stroke(cairo_t* c, const Polyline& line) {
     cairo_stroke(c);
 }
 
+void put_shape(cairo_t* c, const Polyline& line) {
+    for (const Vec2& p : line.points) cairo_line_to(c, p.x, p.y);
+    for (const auto& other : line.more) {
+        cairo_new_sub_path(c);
+        for (const Vec2& p : other) cairo_line_to(c, p.x, p.y);
+    }
+    stroke(c, line);
+}
+
 struct Canvas {
     Target surface;
     Context context;
@@ -170,7 +179,12 @@ Coverage painted_about(const std::vector<Vec2>& points, double rim, int width, i
 }  // namespace
 
 Coverage coverage(const Polyline& line, int width, int height) {
-    return painted_about(line.points, line.width + 1, width, height, [&](cairo_t* c) { stroke(c, line); });
+    std::vector<Vec2> all = line.points;
+    for (const auto& other : line.more) all.insert(all.end(), other.begin(), other.end());
+    return painted_about(all, line.width + 1, width, height, [&](cairo_t* c) {
+        cairo_new_path(c);
+        put_shape(c, line);
+    });
 }
 
 Coverage coverage(const Filled& area, int width, int height) {
@@ -203,10 +217,6 @@ cairo_status_t append(void* to, const unsigned char* data, unsigned int length) 
     return CAIRO_STATUS_SUCCESS;
 }
 
-void put_shape(cairo_t* c, const Polyline& line) {
-    for (const Vec2& p : line.points) cairo_line_to(c, p.x, p.y);
-    stroke(c, line);
-}
 void put_shape(cairo_t* c, const Filled& area) {
     for (const Vec2& p : area.outline) cairo_line_to(c, p.x, p.y);
     cairo_close_path(c);

@@ -47,11 +47,21 @@ void render_one(const Scene& scene, const std::string& output, RenderOptions how
     if (!quiet) std::fprintf(stderr, "%s: %s\n", output.c_str(), summary_of(picture).c_str());
 }
 
+/// With the camera of --camera instead of its own.
+Scene scene_of(const Options& options, const std::map<std::string, double>& parameters = {}) {
+    Scene scene = options.scene(parameters);
+    if (const auto camera = options.value("--camera")) {
+        scene.camera = load_camera(*camera);
+        for (Panel& p : scene.panels) p.camera.reset();
+    }
+    return scene;
+}
+
 int run(const std::vector<std::string>& arguments) {
     std::vector<Options::Known> known = paper_options();
     known.insert(known.end(),
                           {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}, {"--crop", true}, {"--set", true}, {"--reproducible", false}, {"--frames", true}, {"--animate", true},
-                           {"--exact", false}, {"--aov", true}});
+                           {"--camera", true}, {"--exact", false}, {"--aov", true}});
     const Options options("render", arguments, known);
     const std::string output = options.required("-o", "the image file to write");
     RenderOptions how = read_render_options(options);
@@ -60,14 +70,14 @@ int run(const std::vector<std::string>& arguments) {
     if (options.has("--frames") || options.has("--animate")) {
         const auto frames = frames_of(options, output);
         how.also_fit = points_of(frames, options);
-        for (const Frame& f : frames) render_one(options.scene(f.parameters), f.path, how, options);
+        for (const Frame& f : frames) render_one(scene_of(options, f.parameters), f.path, how, options);
         return kSuccess;
     }
     check_picture_path(options, output);
     std::vector<NamedFile> files;
     for (const std::string& file : paper_files(output)) files.push_back({"-o", file});
     check_outputs(options, files, {{"SCENE", options.scene_path()}});
-    render_one(options.scene(), output, how, options);
+    render_one(scene_of(options), output, how, options);
     return kSuccess;
 }
 
