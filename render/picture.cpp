@@ -22,6 +22,7 @@ namespace {
 
 constexpr int kTile = 16;           // pixels a side
 constexpr double kMeshShare = 0.2;  // of the progress bar
+constexpr double kLeastPrinted = 6;  // points: smaller letters are hard to read on paper
 constexpr int kLargestSize = 1 << 16, kMostSamples = 1 << 16;
 
 struct Rgba {
@@ -305,6 +306,8 @@ Picture render(const Scene& scene, const RenderOptions& options) {
     std::optional<double> letter;
     if (options.letter_points) letter = *options.letter_points * options.pixels_per_point;
     auto views = views_of(scene, width, height, options.also_fit, letter);
+    if (const double least = kLeastPrinted * options.pixels_per_point; options.vectors && !letter && views.front().letter < least)
+        views = views_of(scene, width, height, options.also_fit, least);
     for (View& v : views) set_points(v.objects, options.pixels_per_point / how.pixel);
     Picture all;
     all.exact = options.exact;

@@ -119,6 +119,7 @@ void stroke(cairo_t* c, const Polyline& line) {
 }
 
 void put_shape(cairo_t* c, const Polyline& line) {
+    cairo_new_path(c);
     for (const Vec2& p : line.points) cairo_line_to(c, p.x, p.y);
     for (const auto& other : line.more) {
         cairo_new_sub_path(c);
@@ -181,10 +182,7 @@ Coverage painted_about(const std::vector<Vec2>& points, double rim, int width, i
 Coverage coverage(const Polyline& line, int width, int height) {
     std::vector<Vec2> all = line.points;
     for (const auto& other : line.more) all.insert(all.end(), other.begin(), other.end());
-    return painted_about(all, line.width + 1, width, height, [&](cairo_t* c) {
-        cairo_new_path(c);
-        put_shape(c, line);
-    });
+    return painted_about(all, line.width + 1, width, height, [&](cairo_t* c) { put_shape(c, line); });
 }
 
 Coverage coverage(const Filled& area, int width, int height) {
@@ -218,11 +216,13 @@ cairo_status_t append(void* to, const unsigned char* data, unsigned int length) 
 }
 
 void put_shape(cairo_t* c, const Filled& area) {
+    cairo_new_path(c);
     for (const Vec2& p : area.outline) cairo_line_to(c, p.x, p.y);
     cairo_close_path(c);
     cairo_fill(c);
 }
 void put_shape(cairo_t* c, const Text& text) {
+    cairo_new_path(c);
     set(c, text);
     cairo_fill(c);
 }
@@ -301,6 +301,7 @@ Target raster_surface(const Image& image) {
 void put_text(cairo_t* c, const DrawingItem& item, const Text& text, bool outlines) {
     if (text.halo > 0) {
         cairo_set_source_rgba(c, 1, 1, 1, halo_opacity(item.opacity));
+        cairo_new_path(c);
         set(c, text);
         cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
         cairo_set_line_width(c, 2 * text.halo);

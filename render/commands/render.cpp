@@ -17,8 +17,13 @@ Ray-traces a scene from meshes whose error is proved; positions and normals that
 surfaces. The same scene gives the same bytes, for every number of threads and at any time.
 
 -o IMAGE          .exr (linear), .png (sRGB) and other formats of OpenImageIO; scene, tolerance and certified error are
-                  in the metadata
+                  in the metadata. .pdf, .svg, .tex (TikZ): the raster with lines and letters over it as vectors and text
+                  (docs/paper.md)
 --size WxH        width and height in pixels; otherwise the scene's
+--width 84mm      width on paper instead (mm, cm, in, pt), and --dpi N pixels an inch, 300 when not given
+--font-size 8pt   of letters for which the scene says no size
+--text fonts|outlines   of .pdf and .svg: letters as text (the default), or as outlines
+--camera FILE     the camera of a file, as isoparm camera print writes it
 --samples N       samples a pixel; otherwise the scene's
 --tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal, 0.25px of the picture; otherwise the scene's
 --crop x0,y0,x1,y1  only these pixels, x0 <= x < x1, y0 <= y < y1, y down

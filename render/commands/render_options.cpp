@@ -37,7 +37,7 @@ double length_in_points(const std::string& text) {
     const auto [stop, error] = std::from_chars(text.data(), end, x);
     if (error != std::errc() || !std::isfinite(x)) return 0;
     const std::string unit(stop, end);
-    for (const auto& [name, points] : {std::pair{"mm", 72 / 25.4}, {"cm", 720 / 25.4}, {"in", 72.0}, {"pt", 72 / 72.27}, {"bp", 1.0}})
+    for (const auto& [name, points] : {std::pair{"mm", 72 / 25.4}, {"cm", 720 / 25.4}, {"in", 72.0}, {"pt", 1.0}})
         if (unit == name) return x * points;
     return 0;
 }
@@ -50,7 +50,7 @@ void read_page(const Options& options, RenderOptions& how) {
     if (const auto width = options.value("--width")) {
         if (options.has("--size")) options.fail("found both --width and --size, expected one of them: --width with --dpi gives the size in pixels");
         const double points = length_in_points(*width), pixels = points * dpi / 72;
-        if (!(points >= 0.99 * 72 / 25.4 && points <= 72 / 25.4 * 2001)) options.fail("--width: found " + quoted(*width) + ", expected a width from 1mm to 2000mm with a unit: mm, cm, in, pt or bp, such as 84mm");
+        if (!(points >= 0.99 * 72 / 25.4 && points <= 72 / 25.4 * 2001)) options.fail("--width: found " + quoted(*width) + ", expected a width from 1mm to 2000mm with a unit: mm, cm, in or pt, such as 84mm");
         if (!(pixels >= 16 && pixels <= 32768)) options.fail("--width " + *width + " at " + to_text(dpi) + " pixels an inch is " + to_text(std::round(pixels)) + " pixels wide, expected 16 to 32768: change --dpi");
         how.width = static_cast<int>(std::lround(pixels));
         how.pixels_per_point = how.width / points;
