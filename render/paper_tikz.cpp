@@ -18,7 +18,6 @@ std::string number(double x, const char* format = "%.3f") {
     if (s.back() == '.') s.pop_back();
     return s == "-0" ? "0" : s;
 }
-std::string at(const Vec2& p) { return "(" + number(p.x, "%.2f") + "," + number(p.y, "%.2f") + ")"; }
 std::string color_of(const Color& c) {
     const auto byte = [](double x) { return std::to_string(std::lround(255 * std::clamp(srgb_from_linear(std::max(0.0, x)), 0.0, 1.0))); };
     return "{rgb,255:red," + byte(c.x) + ";green," + byte(c.y) + ";blue," + byte(c.z) + "}";
@@ -30,10 +29,9 @@ public:
 
     std::string run(const std::string& raster) {
         const int width = figure_.raster.width, height = figure_.raster.height;
-        const std::string unit = number(1 / figure_.pixels_per_point, "%.6f") + "bp";
         out_ = "% Made by isoparm " ISOPARM_VERSION ". \\input it where the packages tikz and amsmath are loaded; " + raster + " lies beside it.\n";
-        out_ += "\\begin{tikzpicture}[x={(" + unit + ",0bp)},y={(0bp,-" + unit + ")},line cap=round,line join=round]\n";
-        out_ += "\\useasboundingbox (0,0) rectangle (" + std::to_string(width) + "," + std::to_string(height) + ");\n";
+        out_ += "\\begin{tikzpicture}[x=1bp,y=-1bp,line cap=round,line join=round]\n";
+        out_ += "\\useasboundingbox (0,0) rectangle " + at({double(width), double(height)}) + ";\n";
         out_ += "\\node[inner sep=0pt,outer sep=0pt,anchor=north west] at (0,0) {\\includegraphics[width=" + in_points(width) + ",height=" + in_points(height) + "]{" + raster + "}};\n";
         for (const DrawnPart& part : figure_.parts) add(part);
         return out_ + "\\end{tikzpicture}%\n";
@@ -41,6 +39,8 @@ public:
 
 private:
     std::string in_points(double pixels) const { return number(pixels / figure_.pixels_per_point) + "bp"; }
+    /// In points: numbers of TeX end at 16383.
+    std::string at(const Vec2& p) const { return "(" + number(p.x / figure_.pixels_per_point) + "," + number(p.y / figure_.pixels_per_point) + ")"; }
     static std::string opacity(const DrawingItem& item) { return item.opacity < 1 ? ",opacity=" + number(item.opacity) : ""; }
 
     void add(const DrawnPart& part) {

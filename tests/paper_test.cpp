@@ -22,7 +22,7 @@ using namespace test;
 constexpr const char* kBall = R"({ "isoparm": 1, "title": "A & <B>", "surfaces": { "s": { "type": "bilinear", "points": [[[-1,-1,0],[-1,1,0]],[[1,-1,0],[1,1,0]]] } },
   "objects": [ { "surface": "s", "color": "white", "opacity": 0.2, "isolines": { "u": 3, "v": 3, "width": "0.5pt" }, "outline": { "width": "1pt", "color": "#ff0000" } },
                { "point": [0.4, -0.3, 0.7], "radius": 0.05, "color": "black", "label": { "text": "P_{00}", "side": "right", "size": "9pt" } } ],
-  "camera": { "eye": [3,-4,2.5], "target": [0,0,0] }, "image": { "width": 400, "height": 300, "samples": 4 } })";
+  "camera": { "eye": [3,-4,2.5], "target": [0,0,0] }, "image": { "width": 240, "height": 180, "samples": 4 } })";
 
 /// Renders into the folder of the scene.
 struct Printed {
@@ -131,7 +131,7 @@ TEST(Paper, TheSameFigureGivesTheSameBytes) {
 TEST(Paper, TikzHasNodesLinesAndTheRasterBesideIt) {
     const Printed p;
     const std::string tex = p.file("a.tex");
-    EXPECT_NE(tex.find("\\includegraphics[width=96bp,height=72bp]{a-raster.png}"), std::string::npos);
+    EXPECT_NE(tex.find("\\includegraphics[width=57.6bp,height=43.2bp]{a-raster.png}"), std::string::npos);
     EXPECT_NE(tex.find("{$P_{00}$};"), std::string::npos);
     EXPECT_NE(tex.find("\\draw[line width=1bp,draw={rgb,255:red,255;green,0;blue,0}"), std::string::npos);
     EXPECT_EQ(std::count(tex.begin(), tex.end(), '{'), std::count(tex.begin(), tex.end(), '}'));
