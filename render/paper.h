@@ -30,6 +30,9 @@ std::vector<std::string> paper_files(const std::string& path);
 /// Writes each to a temporary name and renames it. Throws Error(io).
 void write_paper(const std::string& path, PaperFigure figure, const Metadata& metadata);
 
+/// Of the white rim of a text whose opacity is for sRGB: about what halo_opacity() makes of light.
+inline double printed_halo(double of_text) { return 0.85 * of_text; }
+
 // What write_paper() writes, once the opacities are right.
 std::string svg_text(const PaperFigure& figure);
 /// `raster`: the name of its file, as \includegraphics finds it.

@@ -54,7 +54,7 @@ void add(const Filled& area, const DrawingItem& item, bool, std::string& out) {
 
 std::string halo_of(const Text& text, double opacity) {
     if (!(text.halo > 0)) return "";
-    return " stroke=\"#ffffff\" stroke-width=\"" + number(2 * text.halo) + "\" stroke-linejoin=\"round\" paint-order=\"stroke\"" + with_opacity("stroke-opacity", halo_opacity(opacity));
+    return " stroke=\"#ffffff\" stroke-width=\"" + number(2 * text.halo) + "\" stroke-linejoin=\"round\" paint-order=\"stroke\"" + with_opacity("stroke-opacity", printed_halo(opacity));
 }
 std::string anchor_of(const Text& text) {
     return text.anchor ? " data-anchor=\"" + number(text.anchor->x) + " " + number(text.anchor->y) + "\"" : "";

@@ -300,7 +300,7 @@ Target raster_surface(const Image& image) {
 
 void put_text(cairo_t* c, const DrawingItem& item, const Text& text, bool outlines) {
     if (text.halo > 0) {
-        cairo_set_source_rgba(c, 1, 1, 1, halo_opacity(item.opacity));
+        cairo_set_source_rgba(c, 1, 1, 1, printed_halo(item.opacity));
         cairo_new_path(c);
         set(c, text);
         cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
