@@ -85,6 +85,8 @@ int run(const std::vector<std::string>& arguments) {
     fs::create_directories(folder, code);
     if (code) throw Error(ErrorKind::io, folder.string() + ": cannot be made: " + code.message());
 
+    check_picture_path(options, (folder / ("contact_sheet." + format)).string());
+
     int result = kSuccess;
     std::vector<Image> thumbnails;
     for (const auto& [name, file] : scenes) {
