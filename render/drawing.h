@@ -3,6 +3,7 @@
 //
 // Pixels of the picture: x to the right, y down, (0,0) the corner of the top left pixel. Colours are linear.
 #pragma once
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct Polyline {
     double width = 1;
     std::vector<double> dash;  // lengths on, off, on, ...; empty: not dashed
     bool round = true;         // ends; corners always are
+    std::vector<std::vector<Vec2>> more{};  // further lines, drawn as one with it: where they cross, they are no darker
 };
 struct Filled {
     std::vector<Vec2> outline;  // closed
@@ -26,6 +28,7 @@ struct Text {
     MathText text;
     double halo = 0;  // width of the white rim about the letters
     bool turned = false;  // by a quarter: reads upwards
+    std::optional<Vec2> anchor{};  // the point that it names
 };
 
 struct DrawingItem {
@@ -34,5 +37,14 @@ struct DrawingItem {
     double opacity = 1;
 };
 using Drawing = std::vector<DrawingItem>;
+
+/// Of the white rim of a text: that of a faint one is fainter still, so that a hidden label does not bleach what hides it.
+inline double halo_opacity(double of_text) { return 0.85 * of_text * of_text; }
+
+/// A drawing on a part of a picture, seen only there; its pixels begin at (x,y) of the picture.
+struct DrawnPart {
+    Drawing drawing;
+    int x = 0, y = 0, width = 0, height = 0;
+};
 
 }  // namespace isoparm

@@ -7,7 +7,7 @@ namespace isoparm {
 namespace {
 
 constexpr double kStep = 1.5;      // pixels between points
-constexpr std::size_t kShort = 3;  // runs of fewer steps are noise of the depth test
+constexpr double kShort = 2;       // shorter runs, pixels, are noise of the depth test
 constexpr double kFlat = 0.02;     // pixels by which a line may be off when points are left out
 
 double apart(const Vec2& a, const Vec2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
@@ -39,7 +39,12 @@ struct Run {
     double seen;
 };
 
-std::vector<Run> runs_of(const std::vector<double>& seen) {
+std::vector<Run> runs_of(const std::vector<double>& seen, const std::vector<Vec2>& at) {
+    const auto is_short = [&](const Run& r) {
+        double pixels = 0;
+        for (std::size_t i = r.first; i < r.last && pixels <= kShort; ++i) pixels += apart(at[i], at[i + 1]);
+        return pixels <= kShort;
+    };
     std::vector<Run> runs;
     for (std::size_t i = 0; i < seen.size(); ++i) {
         if (!runs.empty() && std::fabs(runs.back().seen - seen[i]) < 1e-6)
@@ -49,9 +54,9 @@ std::vector<Run> runs_of(const std::vector<double>& seen) {
     }
     std::vector<Run> kept;
     for (const Run& r : runs) {
-        if (!kept.empty() && (r.last - r.first <= kShort || std::fabs(kept.back().seen - r.seen) < 1e-6))
+        if (!kept.empty() && (is_short(r) || std::fabs(kept.back().seen - r.seen) < 1e-6))
             kept.back().last = r.last;
-        else if (kept.size() == 1 && kept[0].last - kept[0].first <= kShort)
+        else if (kept.size() == 1 && is_short(kept[0]))
             kept[0] = {kept[0].first, r.last, r.seen};
         else
             kept.push_back(r);
@@ -92,16 +97,78 @@ std::vector<Point> fine_points(const std::vector<CubicPiece>& pieces, const Came
     return points;
 }
 
-void add_line(const std::vector<Point>& points, const LineLook& look, const Sight& sight, double clear,
-              Drawing& drawing) {
-    if (points.size() < 2 || !(look.width > 0) || !(look.opacity > 0)) return;
+namespace {
+
+/// A line on the picture, and how much of each of its points is seen.
+struct SeenLine {
     std::vector<Vec2> at;
     std::vector<double> seen;
-    for (const Point& p : points) {
-        at.push_back(sight.camera().project(p));
-        seen.push_back(look.hidden == Hidden::show ? 1 : sight.of(p, clear));
+    void add(const Vec2& p, double s) {
+        at.push_back(p);
+        seen.push_back(s);
     }
-    const auto runs = runs_of(seen);
+};
+
+/// Where between a and b what is seen changes, as far on as it is still as at a.
+Point change(const Point& a, const Point& b, double seen_at_a, const Sight& sight, double clear) {
+    double low = 0, high = 1;
+    for (int i = 0; i < 5; ++i) {
+        const double middle = 0.5 * (low + high);
+        (std::fabs(sight.of((1 - middle) * a + middle * b, clear) - seen_at_a) < 1e-6 ? low : high) = middle;
+    }
+    const double t = 0.5 * (low + high);
+    return (1 - t) * a + t * b;
+}
+
+SeenLine seen_line(const std::vector<Point>& points, const Sight& sight, bool all, double clear, const std::vector<double>& fade) {
+    SeenLine line;
+    double before = 1;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double now = all ? 1 : sight.of(points[i], clear), f = fade.empty() ? 1 : fade[i];
+        if (i > 0 && std::fabs(now - before) > 1e-6) line.add(sight.camera().project(change(points[i - 1], points[i], before, sight, clear)), line.seen.back());
+        line.add(sight.camera().project(points[i]), now * f);
+        before = now;
+    }
+    return line;
+}
+
+void refine(const std::function<Point(double)>& curve, double a, const Point& pa, double b, const Point& pb, const Camera& camera, int depth, std::vector<double>& out) {
+    const bool before = camera.depth(pa) > 0 && camera.depth(pb) > 0 && finite(pa) && finite(pb);
+    if (depth > 0 && before && apart(camera.project(pa), camera.project(pb)) > kStep) {
+        const double m = 0.5 * (a + b);
+        const Point pm = curve(m);
+        refine(curve, a, pa, m, pm, camera, depth - 1, out);
+        refine(curve, m, pm, b, pb, camera, depth - 1, out);
+        return;
+    }
+    out.push_back(b);
+}
+
+bool alike(const DrawingItem& a, const DrawingItem& b) {
+    const auto *x = std::get_if<Polyline>(&a.shape), *y = std::get_if<Polyline>(&b.shape);
+    return x && y && a.color == b.color && a.opacity == b.opacity && x->width == y->width && x->dash == y->dash;
+}
+
+}  // namespace
+
+std::vector<double> fine_parameters(const std::function<Point(double)>& curve, double from, double to, const Camera& camera) {
+    constexpr int kSpans = 16, kDepth = 10;
+    std::vector<double> all{from};
+    Point last = curve(from);
+    for (int i = 1; i <= kSpans; ++i) {
+        const double t = i == kSpans ? to : from + (to - from) * i / kSpans;
+        const Point p = curve(t);
+        refine(curve, all.back(), last, t, p, camera, kDepth, all);
+        last = p;
+    }
+    return all;
+}
+
+void add_line(const std::vector<Point>& points, const LineLook& look, const Sight& sight, double clear,
+              Drawing& drawing, const std::vector<double>& fade) {
+    if (points.size() < 2 || !(look.width > 0) || !(look.opacity > 0)) return;
+    const auto [at, seen] = seen_line(points, sight, look.hidden == Hidden::show, clear, fade);
+    const auto runs = runs_of(seen, at);
     for (const Run& r : runs) {
         const double opacity = look.opacity * opacity_of(look.hidden, r.seen);
         if (opacity < 0.02) continue;
@@ -114,6 +181,20 @@ void add_line(const std::vector<Point>& points, const LineLook& look, const Sigh
         if (!line.dash.empty()) line.round = false;
         drawing.push_back({std::move(line), look.color, opacity});
     }
+}
+
+void join_lines(Drawing& drawing, std::size_t first) {
+    Drawing joined(drawing.begin(), drawing.begin() + static_cast<std::ptrdiff_t>(std::min(first, drawing.size())));
+    for (std::size_t i = first; i < drawing.size(); ++i) {
+        const auto same = std::find_if(joined.begin() + static_cast<std::ptrdiff_t>(first), joined.end(), [&](const DrawingItem& other) { return alike(other, drawing[i]); });
+        if (same == joined.end()) {
+            joined.push_back(std::move(drawing[i]));
+            continue;
+        }
+        Polyline &line = std::get<Polyline>(same->shape), &more = std::get<Polyline>(drawing[i].shape);
+        line.more.push_back(std::move(more.points));
+    }
+    drawing = std::move(joined);
 }
 
 }  // namespace isoparm

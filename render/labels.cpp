@@ -44,7 +44,7 @@ public:
                     const TextPlace there = candidate(request, anchor, side, far);
                     const double cost =
                         cost_of(there, request, anchor, side, far) + kNextAnchor * static_cast<double>(k);
-                    if (cost < least) least = cost, best = there, seen = anchor.seen;
+                    if (cost < least) least = cost, best = there, best.text.anchor = anchor.at, seen = anchor.seen;
                 }
         taken_.push_back(grown(best, 0.12 * request.size));
         return best;

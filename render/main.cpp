@@ -21,6 +21,7 @@ const Command* const kCommands[] = {
     &tessellate_command,  // a mesh whose error is proved
     &verify_command,      // any mesh against a surface
     &render_command,      // a ray-traced picture
+    &camera_command,      // the camera of a picture, for others
     &figures_command,     // all pictures
     &limit_command,       // against OpenSubdiv
     &study_command,       // how well methods tessellate

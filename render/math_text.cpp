@@ -175,6 +175,15 @@ MathText parse_math_text(const std::string& text, bool prose) {
     return parser.take();
 }
 
+std::string tex_of_symbol(const std::string& character) {
+    if (character == "\u2212") return "-";
+    if (character == "\u2009") return "\\,";
+    if (character == "\u2032") return "'";
+    for (const auto& [name, symbol] : symbols())
+        if (character == symbol.text && static_cast<unsigned char>(character[0]) >= 0x80) return "\\" + name + " ";
+    return "";
+}
+
 MathText number_text(double x, int digits) {
     char text[64];
     std::snprintf(text, sizeof text, "%.*f", digits, x == 0 ? 0.0 : x);

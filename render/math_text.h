@@ -33,4 +33,9 @@ MathText parse_math_text(const std::string& text, bool prose = false);
 /// A number as an axis shows it: at most `digits` behind the point, a true minus sign.
 MathText number_text(double x, int digits);
 
+/// The same in TeX: prose as text, everything else between two $.
+std::string tex_of(const MathText& text);
+/// "\alpha " of "α"; "" of characters that mathematics has no name for.
+std::string tex_of_symbol(const std::string& character);
+
 }  // namespace isoparm

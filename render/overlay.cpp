@@ -8,7 +8,9 @@
 #include "drawn.h"
 #include "flat_lines.h"
 #include "labels.h"
+#include "outlines.h"
 #include "palette.h"
+#include "surface_lines.h"
 
 namespace isoparm {
 namespace {
@@ -21,18 +23,21 @@ using Kind = SceneObject::Kind;
 
 class Overlay {
 public:
-    Overlay(const Scene& scene, const TracedScene& traced, const Camera& camera, double pixel, double letter)
+    Overlay(const Scene& scene, const TracedScene& traced, const Camera& camera, double pixel, double letter, bool isolines)
         : scene_(scene),
           camera_(camera),
           sight_(traced, camera),
           pixel_(pixel),
           size_(bounding_box(scene).diagonal()),
-          letter_(letter) {
+          letter_(letter),
+          isolines_(isolines) {
         if (!(size_ > 0)) size_ = 1;
     }
 
     Drawing run(const std::vector<SceneObject>& objects) {
         middle_ = middle_of(objects);
+        for (const SceneObject& o : objects)
+            if (o.kind == Kind::surface) add_surface_lines(o);
         for (const SceneObject& o : objects) add(o);
         for (const SceneObject& o : objects) add_labels(o);
         place_labels(requests_, obstacles_, camera_.width, camera_.height, drawing_);
@@ -67,6 +72,18 @@ private:
                          o.label.size ? *o.label.size * pixel_ : letter_, obstacles_, drawing_);
         }
     }
+    void add_surface_lines(const SceneObject& o) {
+        const Composite& patches = surface_of(scene_, o).patches;
+        if (isolines_ && o.opacity > 0) add_isolines(patches, o.isolines, pixel_, size_, sight_, drawing_);
+        if (!(o.outline.line.width > 0)) return;
+        const std::size_t first = drawing_.size();
+        for (const auto& points : outline_of(patches, camera_, size_, !o.boundary)) {
+            avoid(points, 0);
+            const LineStyle& line = o.outline.line;
+            add_line(points, {o.outline.color.value_or(curve_color()), o.outline.opacity, line.width * pixel_, scaled(line.dash), line.hidden}, sight_, 0, drawing_);
+        }
+        join_lines(drawing_, first);
+    }
     /// A flat line, or what a tube of that radius covers already.
     void add(const SceneObject& o, const std::vector<Point>& points, const Color& color, double opacity,
              double radius) {
@@ -91,9 +108,10 @@ private:
         const double opacity = o.opacity * opacity_of(o.line.hidden, sight_.of(o.point));
         if (opacity > 0.02) drawing_.push_back({std::move(disc), o.color.value_or(point_color()), opacity});
     }
-    std::vector<double> scaled(std::vector<double> dash) const {
-        for (double& d : dash) d *= pixel_;
-        return dash;
+    std::vector<double> scaled(const std::vector<Extent>& dash) const {
+        std::vector<double> all;
+        for (const Extent& d : dash) all.push_back(d * pixel_);
+        return all;
     }
     std::vector<Point> points_of(const DrawnCurve& curve) const {
         return fine_points(cubic_pieces(curve, 1e-5 * size_), camera_);
@@ -200,6 +218,7 @@ private:
     const Camera& camera_;
     Sight sight_;
     double pixel_, size_, letter_;
+    bool isolines_;
     Vec2 middle_;
     std::vector<Obstacle> obstacles_;
     std::vector<LabelRequest> requests_;
@@ -209,12 +228,12 @@ private:
 }  // namespace
 
 Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced,
-                const Camera& camera, double pixel, double letter) {
-    const auto vectors = [](const SceneObject& o) {
-        return o.line.width > 0 || !o.label.text.empty() || !o.net_labels.empty() || o.kind == Kind::axes;
+                const Camera& camera, double pixel, double letter, bool isolines) {
+    const auto vectors = [&](const SceneObject& o) {
+        return o.line.width > 0 || o.outline.line.width > 0 || (isolines && o.isolines.u + o.isolines.v > 0) || !o.label.text.empty() || !o.net_labels.empty() || o.kind == Kind::axes;
     };
     if (std::none_of(objects.begin(), objects.end(), vectors)) return {};
-    return Overlay(scene, traced, camera, pixel, letter).run(objects);
+    return Overlay(scene, traced, camera, pixel, letter, isolines).run(objects);
 }
 
 double letter_size(int picture_width, int picture_height, int width, int height) {

@@ -6,9 +6,9 @@
 namespace isoparm {
 
 /// `pixel`: pixels of this picture to one of the scene's; `letter`: size of letters that say nothing else. The same for
-/// every number of threads.
+/// every number of threads. `isolines`: those of surfaces too, which the tracer otherwise paints.
 Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced,
-                const Camera& camera, double pixel, double letter);
+                const Camera& camera, double pixel, double letter, bool isolines = false);
 
 /// The size of letters, in pixels, on a part width x height of a picture.
 double letter_size(int picture_width, int picture_height, int width, int height);

@@ -19,6 +19,8 @@ void add(const Coverage& c, const Vec3<double>& color, double opacity, Image& im
 Vec2 moved(const Vec2& p, int left, int top) { return {p.x - left, p.y - top}; }
 void move(Polyline& line, int left, int top) {
     for (Vec2& p : line.points) p = moved(p, left, top);
+    for (auto& other : line.more)
+        for (Vec2& p : other) p = moved(p, left, top);
 }
 void move(Filled& area, int left, int top) {
     for (Vec2& p : area.outline) p = moved(p, left, top);
@@ -34,10 +36,9 @@ void paint(const Drawing& drawing, int left, int top, Image& image) {
             [&](auto shape) {
                 move(shape, left, top);
                 if constexpr (std::is_same_v<decltype(shape), Text>) {
-                    // The rim of a faint text is fainter still: a hidden label does not bleach what hides it.
                     if (shape.halo > 0)
                         add(coverage(shape, shape.halo, image.width, image.height), white,
-                            0.85 * item.opacity * item.opacity, image);
+                            halo_opacity(item.opacity), image);
                     add(coverage(shape, 0, image.width, image.height), item.color, item.opacity, image);
                 } else {
                     add(coverage(shape, image.width, image.height), item.color, item.opacity, image);

@@ -20,14 +20,14 @@ std::vector<Point> joined(std::vector<Point> a, const std::vector<Point>& b) {
 
 }  // namespace
 
-std::vector<View> views_of(const Scene& scene, int width, int height, const std::vector<Point>& also_fit) {
+std::vector<View> views_of(const Scene& scene, int width, int height, const std::vector<Point>& also_fit, std::optional<double> asked) {
     const auto objects = drawn_objects(scene);
     const auto all = joined(drawn_points(scene, objects), also_fit);
     if (scene.panels.empty())
-        return {{objects, scene.camera, all, 0, 0, width, height, letter_size(width, height, width, height)}};
+        return {{objects, scene.camera, all, 0, 0, width, height, asked.value_or(letter_size(width, height, width, height))}};
 
     const int rows = scene.panel_rows, columns = scene.panel_columns, w = width / columns;
-    const double letter = letter_size(width, height, w, height / rows);
+    const double letter = asked.value_or(letter_size(width, height, w, height / rows));
     const bool titled =
         std::any_of(scene.panels.begin(), scene.panels.end(), [](const Panel& p) { return !p.title.empty(); });
     const int title = titled ? static_cast<int>(kTitle * letter + 0.5) : 0, h = height / rows - title;

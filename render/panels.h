@@ -16,8 +16,8 @@ struct View {
 
 /// The whole picture when the scene has no panels; otherwise panels of equal size in rows, each with room for a title
 /// under it when any has one. Throws Error(usage) when the picture is too small for them. `also_fit`: further points
-/// for the cameras.
-std::vector<View> views_of(const Scene& scene, int width, int height, const std::vector<Point>& also_fit);
+/// for the cameras. `letter`: size of letters, pixels, instead of one that goes with the picture's.
+std::vector<View> views_of(const Scene& scene, int width, int height, const std::vector<Point>& also_fit, std::optional<double> letter = {});
 
 /// The titles under the views of the panels.
 Drawing titles_of(const Scene& scene, const std::vector<View>& views);

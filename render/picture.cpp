@@ -23,6 +23,7 @@ namespace {
 
 constexpr int kTile = 16;           // pixels a side
 constexpr double kMeshShare = 0.2;  // of the progress bar
+constexpr double kLeastPrinted = 6;  // points: smaller letters are hard to read on paper
 constexpr int kLargestSize = 1 << 16, kMostSamples = 1 << 16;
 
 struct Rgba {
@@ -238,8 +239,16 @@ struct Quality {
     Tolerance tolerance;
     double pixel;  // pixels of this picture to one of the scene's
     std::vector<Aov> aovs;
-    bool exact;
+    bool exact, vectors;
 };
+
+/// Puts a drawing over a picture; (x,y) is where its pixels begin there.
+void put_over(Drawing drawing, int x, int y, int width, int height, bool vectors, Picture& picture) {
+    if (vectors)
+        picture.drawn.push_back({std::move(drawing), x, y, width, height});
+    else
+        paint(drawing, -x, -y, picture.image);
+}
 
 /// The part `area` of a view, in the view's own pixels.
 Picture render_view(const Scene& scene, const View& view, const Area& area, const Quality& how,
@@ -254,7 +263,7 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     picture.tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
     auto start = std::chrono::steady_clock::now();
     TracedScene traced = build_traced_scene(scene, view.objects, picture.tolerance, part_of_progress(0, kMeshShare), how.exact);
-    for (Thing& thing : traced.things) thing.isolines.width *= how.pixel;
+    for (Thing& thing : traced.things) thing.isolines.width = how.vectors ? 0 : thing.isolines.width * how.pixel;
     picture.certified_error = traced.certified_error;
     picture.triangles = traced.triangles;
     for (const ExactPatch& p : traced.patches) picture.leaves += p.leaves();
@@ -267,7 +276,7 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     trace(Tracer(traced, camera, *lighting, how.samples, scene.image.background), AovReader(scene, traced, camera, how.aovs), area,
           part_of_progress(kMeshShare, 1 - kMeshShare), picture);
     picture.rays = traced.embree->count();
-    paint(overlay(scene, view.objects, traced, camera, how.pixel, view.letter), area.x0, area.y0, picture.image);
+    put_over(overlay(scene, view.objects, traced, camera, how.pixel, view.letter, how.vectors), -area.x0, -area.y0, view.width, view.height, how.vectors, picture);
     picture.seconds_trace = seconds_since(start);
     return picture;
 }
@@ -292,13 +301,21 @@ void paste(const Picture& part, int x0, int y0, Picture& whole) {
 
 Picture render(const Scene& scene, const RenderOptions& options) {
     const int width = checked_size(options.width ? options.width : scene.image.width, "width", kLargestSize);
-    const int height = checked_size(options.height ? options.height : scene.image.height, "height", kLargestSize);
+    const int height = checked_size(options.height  ? options.height
+                                    : options.width ? static_cast<int>(std::lround(static_cast<double>(width) * scene.image.height / scene.image.width))
+                                                    : scene.image.height,
+                                    "height", kLargestSize);
     const Area area = checked_area(options, width, height);
     const Quality how{
         checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples),
-        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs, options.exact};
+        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs, options.exact, options.vectors};
     double reached = 0;  // progress never runs backwards, whatever its parts report
-    const auto views = views_of(scene, width, height, options.also_fit);
+    std::optional<double> letter;
+    if (options.letter_points) letter = *options.letter_points * options.pixels_per_point;
+    auto views = views_of(scene, width, height, options.also_fit, letter);
+    if (const double least = kLeastPrinted * options.pixels_per_point; options.vectors && !letter && views.front().letter < least)
+        views = views_of(scene, width, height, options.also_fit, least);
+    for (View& v : views) set_points(v.objects, options.pixels_per_point / how.pixel);
     Picture all;
     all.exact = options.exact;
     all.image = blank(area.width(), area.height(), scene.image.background);
@@ -316,6 +333,10 @@ Picture render(const Scene& scene, const RenderOptions& options) {
         const Picture one =
             render_view(scene, v, {seen.x0 - v.x, seen.y0 - v.y, seen.x1 - v.x, seen.y1 - v.y}, how, progress);
         paste(one, seen.x0 - area.x0, seen.y0 - area.y0, all);
+        for (DrawnPart part : one.drawn) {
+            part.x += seen.x0 - area.x0, part.y += seen.y0 - area.y0;
+            all.drawn.push_back(std::move(part));
+        }
         all.tolerance = std::max(all.tolerance, one.tolerance);
         all.certified_error = std::max(all.certified_error, one.certified_error);
         all.triangles += one.triangles;
@@ -325,7 +346,7 @@ Picture render(const Scene& scene, const RenderOptions& options) {
         all.seconds_mesh += one.seconds_mesh;
         all.seconds_trace += one.seconds_trace;
     }
-    paint(titles_of(scene, views), area.x0, area.y0, all.image);
+    put_over(titles_of(scene, views), -area.x0, -area.y0, width, height, options.vectors, all);
     return all;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "aov.h"
+#include "drawing.h"
 #include "image.h"
 #include "scene.h"
 
@@ -16,11 +17,15 @@ struct RenderOptions {
     bool exact = false;                      // rays meet the surfaces themselves; the tolerance is for tubes only
     std::vector<Aov> aovs;                   // what to put in `layers`
     std::vector<Point> also_fit;             // cameras that fit have these in the picture too: other frames of a film
+    double pixels_per_point = 300.0 / 72;    // of the printed picture: what a scene says in points
+    std::optional<double> letter_points;     // size of letters that say nothing else
+    bool vectors = false;                    // lines and texts are not painted, but given back in `drawn`
     std::function<void(double)> progress;    // fraction done; called from the calling thread
 };
 
 struct Picture {
     Image image;
+    std::vector<DrawnPart> drawn;  // RenderOptions::vectors, over the image
     Layers layers;               // RenderOptions::aovs, as many pixels as the image
     double tolerance = 0;        // absolute, scene units
     double certified_error = 0;  // of the meshes that were traced, float rounding included

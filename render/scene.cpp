@@ -47,6 +47,24 @@ void add_object(Union& all, const Scene& scene, const SceneObject& o) {
 
 }  // namespace
 
+void set_points(std::vector<SceneObject>& objects, double pixels) {
+    const auto set = [&](Extent& e) {
+        if (e.points) e = pixels * e.value;
+    };
+    const auto set_line = [&](LineStyle& line) {
+        set(line.width);
+        for (Extent& e : line.dash) set(e);
+    };
+    for (SceneObject& o : objects) {
+        set(o.isolines.width);
+        set_line(o.line);
+        set_line(o.outline.line);
+        if (o.label.size) set(*o.label.size);
+        for (Label& l : o.net_labels)
+            if (l.size) set(*l.size);
+    }
+}
+
 std::vector<Point> ends_of(const Axes& axes) {
     std::vector<Point> ends;
     for (int k = 0; k < 3; ++k) {

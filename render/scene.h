@@ -26,10 +26,18 @@ struct Surface {
     std::function<DataReport()> examine;  // its data and what it promises of them; empty where it promises nothing
 };
 
+/// A length on the picture: pixels of the scene's picture, or points of the printed one, which a scene file writes as "0.5pt".
+struct Extent {
+    double value = 0;
+    bool points = false;
+    Extent(double v = 0, bool p = false) : value(v), points(p) {}
+    operator double() const { return value; }
+};
+
 /// Lines u = const and v = const drawn on a surface: how many of each (ends included), in equal steps of the domain.
 struct Isolines {
     int u = 0, v = 0;
-    double width = 1.2;  // pixels of the picture
+    Extent width = 1.2;
     Color color{0, 0, 0};
     double opacity = 0.55;
 };
@@ -49,17 +57,24 @@ struct Label {
     MathText text;  // empty: none
     std::optional<double> at;      // parameter of the curve
     std::optional<Vec2> at_uv;     // of the surface
-    std::optional<double> size;    // of the letters, pixels of the scene's picture; default a fraction of its height
+    std::optional<Extent> size;    // of the letters; default a fraction of the picture's height
     std::optional<Color> color;
     Hidden hidden = Hidden::ghost;
     std::optional<int> side;       // 0 right, 1 above right, 2 above ... 7 below right, 8 on the spot
 };
 
-/// A curve, boundary or net drawn flat, or the diameter of a flat dot. Widths are in pixels of the scene's picture.
+/// A curve, boundary or net drawn flat, or the diameter of a flat dot.
 struct LineStyle {
-    double width = 0;  // 0: a tube instead
-    std::vector<double> dash;
+    Extent width = 0;  // 0: a tube instead
+    std::vector<Extent> dash;
     Hidden hidden = Hidden::hide;
+};
+
+/// The lines where a surface turns away from the eye, and its borders.
+struct Outline {
+    LineStyle line;  // width 0: none
+    std::optional<Color> color;
+    double opacity = 1;
 };
 
 /// Coordinate axes through `origin`, each over its range; ticks in ascending order.
@@ -84,6 +99,7 @@ struct SceneObject {
     std::optional<double> radius;  // of tubes, rods and balls, scene units; default a fraction of the scene's size
     Isolines isolines;
     bool boundary = false;         // draw the patches' boundary curves as tubes
+    Outline outline;               // Kind::surface
     LineStyle line;
     Point point;                   // Kind::point
     ControlNet net;                // Kind::net
@@ -136,6 +152,9 @@ struct Scene {
     const Curve* find_curve(const std::string& name) const;
 };
 
+/// Lengths in points become pixels of the scene's picture: `pixels` a point.
+void set_points(std::vector<SceneObject>& objects, double pixels);
+
 /// Where the axes begin and end, two points each.
 std::vector<Point> ends_of(const Axes& axes);
 
@@ -145,5 +164,8 @@ Bounds bounding_box(const Scene& scene);
 /// Reads and checks a scene file. Throws Error(input) with "path:line:column: at $.json.path: found ..., expected ...".
 /// `overrides` are --set values of parameters.
 Scene load_scene(const std::string& path, const std::map<std::string, double>& overrides = {});
+
+/// A camera that a file holds by itself, as a scene's "camera". Throws Error(input) likewise.
+CameraSettings load_camera(const std::string& path);
 
 }  // namespace isoparm

@@ -243,6 +243,11 @@ Scene read_scene(const Json& root, const std::map<std::string, double>& override
 
 }  // namespace
 
+CameraSettings load_camera(const std::string& path) {
+    const Json root = Json::parse(read_text_file(path), path);
+    return read_camera(root, {});
+}
+
 Scene load_scene(const std::string& path, const std::map<std::string, double>& overrides) {
     return read_scene(Json::parse(read_text_file(path), path), overrides);
 }

@@ -1,6 +1,7 @@
 #include "scene_objects.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include "scene_light.h"
 #include "suggest.h"
@@ -11,13 +12,29 @@ namespace {
 
 using Kind = Json::Kind;
 
+/// A number of pixels, or a text such as "0.5pt": points of the printed picture.
+Extent read_pixels(const Json& j, const SceneValues& values, double most, const std::string& what) {
+    const std::string expected = what + " in pixels, from 0.01 to " + to_text(most) + ", or in points of the printed picture, such as \"0.5pt\"";
+    if (j.is(Kind::string) && j.string().size() > 2 && j.string().ends_with("pt")) {
+        const std::string& text = j.string();
+        double points = 0;
+        const char* end = text.data() + text.size() - 2;
+        const auto [stop, error] = std::from_chars(text.data(), end, points);
+        if (error == std::errc() && stop == end) {
+            if (!(points >= 0.01 && points <= most)) j.expected(expected);
+            return {points, true};
+        }
+    }
+    return values.in_range(j, 0.01, most, expected);
+}
+
 Isolines read_isolines(const Json& j, const SceneValues& values) {
     must_be_object(j, "isolines {\"u\": count, \"v\": count}");
     j.allow_keys({"u", "v", "width", "color", "opacity"});
     Isolines lines;
     if (const auto u = j.find("u")) lines.u = values.integer(*u, 0, 1000, "a number of lines");
     if (const auto v = j.find("v")) lines.v = values.integer(*v, 0, 1000, "a number of lines");
-    if (const auto width = j.find("width")) lines.width = values.positive(*width, "a positive width in pixels");
+    if (const auto width = j.find("width")) lines.width = read_pixels(*width, values, 1000, "a width");
     if (const auto color = j.find("color")) lines.color = values.color(*color);
     if (const auto opacity = j.find("opacity")) lines.opacity = values.in_range(*opacity, 0, 1, "an opacity from 0 to 1");
     return lines;
@@ -41,11 +58,6 @@ ControlNet net_named(const Json& name, SceneBuilder& builder) {
 
 Hidden read_hidden(const Json& j, const SceneValues& values) { return static_cast<Hidden>(values.word(j, {"ghost", "hide", "show", "dash"})); }
 
-double read_pixels(const Json& j, const SceneValues& values, double most, const std::string& what) {
-    const std::string expected = what + " in pixels, from 0.01 to " + to_text(most);
-    return values.in_range(j, 0.01, most, expected);
-}
-
 LineStyle read_line(const Json& j, const SceneValues& values, LineStyle line) {
     const auto width = j.find("line"), dash = j.find("dash"), hidden = j.find("hidden");
     if (width) line.width = read_pixels(*width, values, 1000, "a width");
@@ -55,6 +67,23 @@ LineStyle read_line(const Json& j, const SceneValues& values, LineStyle line) {
     }
     if (hidden) line.hidden = read_hidden(*hidden, values);
     return line;
+}
+
+/// true, or {"width": ..., and how it looks}.
+Outline read_outline(const Json& j, const SceneValues& values) {
+    Outline outline;
+    outline.line.width = 2;
+    if (j.is(Kind::boolean)) {
+        if (!j.boolean()) outline.line.width = 0;
+        return outline;
+    }
+    if (!j.is(Kind::object)) j.expected("true, false, or an outline {\"width\": ..., \"color\": ...}");
+    j.allow_keys({"width", "color", "opacity", "dash", "hidden"});
+    if (const auto width = j.find("width")) outline.line.width = read_pixels(*width, values, 1000, "a width");
+    outline.line = read_line(j, values, outline.line);
+    if (const auto color = j.find("color")) outline.color = values.color(*color);
+    if (const auto opacity = j.find("opacity")) outline.opacity = values.in_range(*opacity, 0, 1, "an opacity from 0 to 1");
+    return outline;
 }
 
 void read_place(const Json& at, const SceneValues& values, SceneBuilder& builder, const Json& name, SceneObject& o) {
@@ -182,13 +211,14 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
 
     SceneObject o;
     if (surface) {
-        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "material", "radius", "label", "line", "dash", "hidden"});
+        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "outline", "material", "radius", "label", "line", "dash", "hidden"});
         o.kind = SceneObject::Kind::surface;
         o.name = values.text(*surface, "the name of a surface");
         builder.surface(*surface);
         if (const auto back = j.find("back")) o.back = values.color(*back);
         if (const auto lines = j.find("isolines")) o.isolines = read_isolines(*lines, values);
         if (const auto boundary = j.find("boundary")) o.boundary = values.boolean(*boundary);
+        if (const auto outline = j.find("outline")) o.outline = read_outline(*outline, values);
     } else if (curve) {
         j.allow_keys({"curve", "color", "opacity", "material", "radius", "label", "line", "dash", "hidden"});
         o.kind = SceneObject::Kind::curve;

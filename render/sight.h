@@ -14,6 +14,8 @@ public:
     const Camera& camera() const { return camera_; }
 
 private:
+    /// Is it the surface in which p lies that the ray meets there? Within what the mesh may be off and a third of a pixel.
+    bool in_surface(const Hit& hit, const Ray& ray, const Point& p, double pixel) const;
     const TracedScene& scene_;
     const Camera& camera_;
     double least_;  // the mesh may be that far before the surface

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <numbers>
 
@@ -55,8 +56,11 @@ Layout layout_of(cairo_t* c, const TextRun& run, double size) {
     return layout;
 }
 
-/// Puts the outlines on the context's path, from (x,y) on.
-TextBox set(cairo_t* c, const MathText& text, double size, double x, double y) {
+void add_to_path(cairo_t* c, PangoLayoutLine* line, const TextRun&) { pango_cairo_layout_line_path(c, line); }
+
+/// Puts the outlines on the context's path, from (x,y) on, or does something else with each run where it stands.
+template <class Use = decltype(&add_to_path)>
+TextBox set(cairo_t* c, const MathText& text, double size, double x, double y, Use use = add_to_path) {
     TextBox box{INFINITY, INFINITY, -INFINITY, -INFINITY, 0};
     double pen = x, subscript = x, furthest = x;
     bool slanted = false;
@@ -86,7 +90,7 @@ TextBox set(cairo_t* c, const MathText& text, double size, double x, double y) {
             box.bottom = std::max(box.bottom, base + unit * (ink.y + ink.height));
         }
         cairo_move_to(c, pen, base);
-        pango_cairo_layout_line_path(c, line);
+        use(c, line, run);
         pen += unit * logical.width;
         furthest = std::max(furthest, pen);
     }
@@ -96,12 +100,12 @@ TextBox set(cairo_t* c, const MathText& text, double size, double x, double y) {
     return box;
 }
 
-/// The outlines of a text where it stands.
-void set(cairo_t* c, const Text& text) {
+/// The same where the text stands.
+template <class Use = decltype(&add_to_path)> void set(cairo_t* c, const Text& text, Use use = add_to_path) {
     cairo_save(c);
     cairo_translate(c, text.at.x, text.at.y);
     if (text.turned) cairo_rotate(c, -std::numbers::pi / 2);
-    set(c, text.text, text.size, 0, 0);
+    set(c, text.text, text.size, 0, 0, use);
     cairo_restore(c);
 }
 
@@ -112,6 +116,16 @@ void stroke(cairo_t* c, const Polyline& line) {
     cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
     cairo_set_dash(c, line.dash.data(), static_cast<int>(line.dash.size()), 0);
     cairo_stroke(c);
+}
+
+void put_shape(cairo_t* c, const Polyline& line) {
+    cairo_new_path(c);
+    for (const Vec2& p : line.points) cairo_line_to(c, p.x, p.y);
+    for (const auto& other : line.more) {
+        cairo_new_sub_path(c);
+        for (const Vec2& p : other) cairo_line_to(c, p.x, p.y);
+    }
+    stroke(c, line);
 }
 
 struct Canvas {
@@ -166,7 +180,9 @@ Coverage painted_about(const std::vector<Vec2>& points, double rim, int width, i
 }  // namespace
 
 Coverage coverage(const Polyline& line, int width, int height) {
-    return painted_about(line.points, line.width + 1, width, height, [&](cairo_t* c) { stroke(c, line); });
+    std::vector<Vec2> all = line.points;
+    for (const auto& other : line.more) all.insert(all.end(), other.begin(), other.end());
+    return painted_about(all, line.width + 1, width, height, [&](cairo_t* c) { put_shape(c, line); });
 }
 
 Coverage coverage(const Filled& area, int width, int height) {
@@ -199,18 +215,39 @@ cairo_status_t append(void* to, const unsigned char* data, unsigned int length) 
     return CAIRO_STATUS_SUCCESS;
 }
 
-void put_shape(cairo_t* c, const Polyline& line) {
-    for (const Vec2& p : line.points) cairo_line_to(c, p.x, p.y);
-    stroke(c, line);
-}
 void put_shape(cairo_t* c, const Filled& area) {
+    cairo_new_path(c);
     for (const Vec2& p : area.outline) cairo_line_to(c, p.x, p.y);
     cairo_close_path(c);
     cairo_fill(c);
 }
 void put_shape(cairo_t* c, const Text& text) {
+    cairo_new_path(c);
     set(c, text);
     cairo_fill(c);
+}
+
+}  // namespace
+
+namespace {
+
+void draw(cairo_t* c, const Drawing& drawing) {
+    for (const DrawingItem& item : drawing) {
+        cairo_set_source_rgba(c, srgb_from_linear(item.color.x), srgb_from_linear(item.color.y), srgb_from_linear(item.color.z), item.opacity);
+        std::visit([&](const auto& shape) { put_shape(c, shape); }, item.shape);
+    }
+}
+
+/// For one page; no date.
+Target pdf_surface(std::string& bytes, double width, double height, const std::string& title) {
+    Target surface(cairo_pdf_surface_create_for_stream(append, &bytes, width, height));
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, title.c_str());
+    cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
+    return surface;
+}
+void finish(const Target& surface) {
+    cairo_surface_finish(surface.get());
+    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::runtime_error("Cairo failed to write a drawing");
 }
 
 }  // namespace
@@ -218,26 +255,126 @@ void put_shape(cairo_t* c, const Text& text) {
 std::string vector_file(const Drawing& drawing, double width, double height, VectorFormat format, const std::string& title) {
     std::string bytes;
     const bool pdf = format == VectorFormat::pdf;
-    const Target surface(pdf ? cairo_pdf_surface_create_for_stream(append, &bytes, width, height)
-                              : cairo_svg_surface_create_for_stream(append, &bytes, width, height));
-    if (pdf) {
-        cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, title.c_str());
-        cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
-    }
+    const Target surface = pdf ? pdf_surface(bytes, width, height, title) : Target(cairo_svg_surface_create_for_stream(append, &bytes, width, height));
     const Context context(cairo_create(surface.get()));
     cairo_t* c = context.get();
     cairo_set_source_rgb(c, 1, 1, 1);
     cairo_paint(c);
-    for (const DrawingItem& item : drawing) {
-        cairo_set_source_rgba(c, srgb_from_linear(item.color.x), srgb_from_linear(item.color.y), srgb_from_linear(item.color.z), item.opacity);
-        std::visit([&](const auto& shape) { put_shape(c, shape); }, item.shape);
-    }
+    draw(c, drawing);
     check(c);
-    cairo_surface_finish(surface.get());
-    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::runtime_error("Cairo failed to write a drawing");
+    finish(surface);
     // Cairo numbers all its surfaces one after the other and writes that down.
     if (const auto at = pdf ? std::string::npos : bytes.find(" id=\"surface"); at != std::string::npos) bytes.erase(at, bytes.find('"', at + 5) + 1 - at);
     return bytes;
+}
+
+namespace {
+
+std::uint32_t byte_of(double x) { return static_cast<std::uint32_t>(std::lround(255 * std::clamp(x, 0.0, 1.0))); }
+
+/// The picture in Cairo's bytes: sRGB, premultiplied.
+Target raster_surface(const Image& image) {
+    const auto opaque = [&] {
+        for (std::size_t i = 3; i < image.pixels.size(); i += 4)
+            if (image.pixels[i] < 1) return false;
+        return true;
+    };
+    Target surface(cairo_image_surface_create(opaque() ? CAIRO_FORMAT_RGB24 : CAIRO_FORMAT_ARGB32, image.width, image.height));
+    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) throw std::runtime_error("Cairo has no room for the picture");
+    unsigned char* data = cairo_image_surface_get_data(surface.get());
+    const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface.get());
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const float* in = image.at(x, y);
+            const double alpha = std::clamp<double>(in[3], 0, 1);
+            std::uint32_t pixel = byte_of(alpha) << 24;
+            for (int k = 0; k < 3; ++k) {
+                const double c = alpha > 0 && in[k] > 0 ? std::min(1.0, in[k] / alpha) : 0;
+                pixel |= byte_of(alpha * srgb_from_linear(c)) << (16 - 8 * k);
+            }
+            std::copy_n(reinterpret_cast<const unsigned char*>(&pixel), 4, data + y * stride + 4 * x);
+        }
+    cairo_surface_mark_dirty(surface.get());
+    return surface;
+}
+
+void put_text(cairo_t* c, const DrawingItem& item, const Text& text, bool outlines) {
+    if (text.halo > 0) {
+        cairo_set_source_rgba(c, 1, 1, 1, printed_halo(item.opacity));
+        cairo_new_path(c);
+        set(c, text);
+        cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
+        cairo_set_line_width(c, 2 * text.halo);
+        cairo_set_dash(c, nullptr, 0, 0);
+        cairo_stroke(c);
+    }
+    cairo_set_source_rgba(c, srgb_from_linear(item.color.x), srgb_from_linear(item.color.y), srgb_from_linear(item.color.z), item.opacity);
+    if (outlines) put_shape(c, text);
+    else set(c, text, [](cairo_t* to, PangoLayoutLine* line, const TextRun&) { pango_cairo_show_layout_line(to, line); });
+}
+
+}  // namespace
+
+std::string pdf_page(const PaperFigure& figure) {
+    const Image& image = figure.raster;
+    std::string bytes;
+    const Target raster = raster_surface(image), surface = pdf_surface(bytes, image.width / figure.pixels_per_point, image.height / figure.pixels_per_point, figure.title);
+    const Context context(cairo_create(surface.get()));
+    cairo_t* c = context.get();
+    cairo_scale(c, 1 / figure.pixels_per_point, 1 / figure.pixels_per_point);
+    cairo_set_source_surface(c, raster.get(), 0, 0);
+    cairo_pattern_set_filter(cairo_get_source(c), CAIRO_FILTER_NEAREST);  // viewers do not smear the pixels
+    cairo_paint(c);
+    for (const DrawnPart& part : figure.parts) {
+        cairo_save(c);
+        cairo_rectangle(c, part.x, part.y, part.width, part.height);
+        cairo_clip(c);
+        cairo_translate(c, part.x, part.y);
+        for (const DrawingItem& item : part.drawing) {
+            if (const Text* text = std::get_if<Text>(&item.shape)) put_text(c, item, *text, figure.outlines);
+            else draw(c, {item});
+        }
+        cairo_restore(c);
+    }
+    check(c);
+    finish(surface);
+    return bytes;
+}
+
+std::string png_bytes(const Image& image) {
+    std::string bytes;
+    const Target surface = raster_surface(image);
+    if (cairo_surface_write_to_png_stream(surface.get(), append, &bytes) != CAIRO_STATUS_SUCCESS) throw std::runtime_error("Cairo failed to write a PNG file");
+    return bytes;
+}
+
+std::vector<PlacedRun> placed_runs(const MathText& text, double size) {
+    const Canvas canvas;
+    std::vector<PlacedRun> runs;
+    set(canvas.context.get(), text, size, 0, 0, [&](cairo_t* c, PangoLayoutLine*, const TextRun& run) {
+        double x = 0, y = 0;
+        cairo_get_current_point(c, &x, &y);
+        runs.push_back({&run, x, y});
+    });
+    return runs;
+}
+
+std::string outline_path(const Text& text) {
+    const Canvas canvas;
+    cairo_t* c = canvas.context.get();
+    set(c, text);
+    std::unique_ptr<cairo_path_t, Release<cairo_path_destroy>> path(cairo_copy_path(c));
+    std::string d;
+    for (int i = 0; i < path->num_data; i += path->data[i].header.length) {
+        const cairo_path_data_t* step = &path->data[i];
+        d += "MLCZ"[step->header.type];
+        for (int k = 1; k < step->header.length; ++k) {
+            char pair[64];
+            std::snprintf(pair, sizeof pair, "%s%.2f %.2f", k > 1 ? " " : "", step[k].point.x, step[k].point.y);
+            d += pair;
+        }
+    }
+    return d;
 }
 
 TextBox text_box(const MathText& text, double size) {

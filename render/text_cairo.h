@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drawing.h"
+#include "paper.h"
 
 namespace isoparm {
 
@@ -31,5 +32,19 @@ TextBox text_box(const MathText& text, double size);
 /// everywhere. No date in it: the same drawing gives the same bytes. Throws Error(io) when no font has the letters.
 enum class VectorFormat { svg, pdf };
 std::string vector_file(const Drawing& drawing, double width, double height, VectorFormat format, const std::string& title);
+
+/// A run of a text where it stands: where its base line begins when the text's does at (0,0).
+struct PlacedRun {
+    const TextRun* run;
+    double x, y;
+};
+std::vector<PlacedRun> placed_runs(const MathText& text, double size);
+/// The outlines of a text's letters, where it stands, as the d of an SVG path; numbers with two decimals. Filled by the nonzero rule.
+std::string outline_path(const Text& text);
+
+/// The figure as one page of PDF: the raster as it is, lines and areas as paths, letters as text with their fonts embedded, or as outlines.
+std::string pdf_page(const PaperFigure& figure);
+/// The picture as PNG: sRGB, 8 bits, with alpha unless it is opaque.
+std::string png_bytes(const Image& image);
 
 }  // namespace isoparm

@@ -20,6 +20,6 @@ struct Command {
     int (*run)(const std::vector<std::string>& arguments);  // without the program's and the command's name; throws Error
 };
 
-extern const Command info_command, eval_command, tessellate_command, render_command, figures_command, limit_command, study_command, verify_command, check_command, diff_command;
+extern const Command info_command, eval_command, tessellate_command, render_command, figures_command, limit_command, camera_command, study_command, verify_command, check_command, diff_command;
 
 }  // namespace isoparm

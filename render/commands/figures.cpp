@@ -17,13 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kHelp = R"(usage: isoparm figures [NAME ...] -o DIR [--size WxH] [--samples N] [--tolerance T]
+constexpr const char* kHelp = R"(usage: isoparm figures [NAME ...] -o DIR [--format F] [--size WxH | --width W] [--samples N] [--tolerance T] ...
 
 Renders every scene that comes with the program, or those named, to DIR/NAME.png, and all of them small on
-DIR/contact_sheet.png. A figure that fails does not stop the others; its exit code is that of the command.
+DIR/contact_sheet.png (without labels and flat lines when these are apart, in .pdf, .svg and .tex). A figure that fails does not stop the others; its exit code is that of the command.
 
 -o DIR            made when it does not exist
---size, --samples, --tolerance   as in isoparm render; otherwise as each scene says
+--format F        png (default), exr, or for print pdf, svg, tex (docs/paper.md)
+--size, --samples, --tolerance, --width, --dpi, --font-size, --text   as in isoparm render; otherwise as each scene says
 --quiet           no messages; --threads N  at most N threads
 
 ISOPARM_SCENES    the folder of the scenes, when it is not the program's own
@@ -73,13 +74,18 @@ std::vector<std::pair<std::string, fs::path>> chosen_scenes(const Options& optio
 constexpr int kCellWidth = 384, kCellHeight = 288;
 
 int run(const std::vector<std::string>& arguments) {
-    const Options options("figures", arguments, {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}});
+    std::vector<Options::Known> known = paper_options();
+    known.insert(known.end(), {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}, {"--format", true}});
+    const Options options("figures", arguments, known);
+    const std::string format = options.word("--format", {"png", "exr", "pdf", "svg", "tex"});
     const fs::path folder = options.required("-o", "the folder to write to");
     const RenderOptions how = read_render_options(options);
     const auto scenes = chosen_scenes(options);
     std::error_code code;
     fs::create_directories(folder, code);
     if (code) throw Error(ErrorKind::io, folder.string() + ": cannot be made: " + code.message());
+
+    check_picture_path(options, (folder / ("contact_sheet." + format)).string());
 
     int result = kSuccess;
     std::vector<Image> thumbnails;
@@ -88,14 +94,14 @@ int run(const std::vector<std::string>& arguments) {
             const Scene scene = load_scene(file.string());
             if (!options.quiet()) print_notes(scene);
             finite_diagonal(scene, bounding_box(scene));
+            const std::string path = (folder / (name + "." + format)).string();
             const Picture picture = [&] {
                 ProgressBar bar(name, options.quiet());
-                RenderOptions with_bar = how;
+                RenderOptions with_bar = rendering_of(how, path);
                 with_bar.progress = std::ref(bar);
                 return render(scene, with_bar);
             }();
-            const std::string path = (folder / (name + ".png")).string();
-            write_image(path, picture.image, metadata_of(scene, picture));
+            write_picture(options, path, scene, how, picture);
             thumbnails.push_back(thumbnail(picture.image, kCellWidth, kCellHeight));
             if (!options.quiet()) std::fprintf(stderr, "%s: %s\n", path.c_str(), summary_of(picture).c_str());
             return kSuccess;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "commands/output.h"
+#include "commands/render_options.h"
 #include "drawn.h"
 #include "error.h"
 #include "image.h"
@@ -81,7 +82,7 @@ std::vector<Frame> frames_of(const Options& options, const std::string& pattern)
         Frame& f = frames.emplace_back(Frame{path_of(options, pattern, k), {}});
         const double t = static_cast<double>(k) / (*count - 1);
         for (const Range& r : ranges) f.parameters[r.name] = std::clamp((1 - t) * r.from + t * r.to, std::min(r.from, r.to), std::max(r.from, r.to));
-        check_image_path(f.path);
+        check_picture_path(options, f.path);
         check_outputs(options, {{"-o", f.path}}, {{"SCENE", options.scene_path()}});
     }
     return frames;

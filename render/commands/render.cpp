@@ -4,6 +4,7 @@
 #include "commands/frames.h"
 #include "commands/output.h"
 #include "commands/render_options.h"
+#include "paper.h"
 #include "progress.h"
 
 namespace isoparm {
@@ -16,8 +17,13 @@ Ray-traces a scene from meshes whose error is proved; positions and normals that
 surfaces. The same scene gives the same bytes, for every number of threads and at any time.
 
 -o IMAGE          .exr (linear), .png (sRGB) and other formats of OpenImageIO; scene, tolerance and certified error are
-                  in the metadata
+                  in the metadata. .pdf, .svg, .tex (TikZ): the raster with lines and letters over it as vectors and text
+                  (docs/paper.md)
 --size WxH        width and height in pixels; otherwise the scene's
+--width 84mm      width on paper instead (mm, cm, in, pt), and --dpi N pixels an inch, 300 when not given
+--font-size 8pt   of letters for which the scene says no size
+--text fonts|outlines   of .pdf and .svg: letters as text (the default), or as outlines
+--camera FILE     the camera of a file, as isoparm camera print writes it
 --samples N       samples a pixel; otherwise the scene's
 --tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal, 0.25px of the picture; otherwise the scene's
 --crop x0,y0,x1,y1  only these pixels, x0 <= x < x1, y0 <= y < y1, y down
@@ -33,21 +39,35 @@ surfaces. The same scene gives the same bytes, for every number of threads and a
 --quiet           no messages; --threads N  at most N threads
 )";
 
-void render_one(const Scene& scene, const std::string& output, RenderOptions how, bool quiet) {
+void render_one(const Scene& scene, const std::string& output, RenderOptions how, const Options& options) {
+    const bool quiet = options.quiet();
     finite_diagonal(scene, bounding_box(scene));
+    how = rendering_of(std::move(how), output);
     const Picture picture = [&] {
         ProgressBar bar("rendering", quiet);
         how.progress = std::ref(bar);
         return render(scene, how);
     }();
-    write_image(output, picture.image, picture.layers, metadata_of(scene, picture));
+    write_picture(options, output, scene, how, picture);
     if (!quiet) std::fprintf(stderr, "%s: %s\n", output.c_str(), summary_of(picture).c_str());
 }
 
+/// With the camera of --camera instead of its own.
+Scene scene_of(const Options& options, const std::map<std::string, double>& parameters = {}) {
+    Scene scene = options.scene(parameters);
+    if (const auto camera = options.value("--camera")) {
+        scene.camera = load_camera(*camera);
+        for (Panel& p : scene.panels) p.camera.reset();
+    }
+    return scene;
+}
+
 int run(const std::vector<std::string>& arguments) {
-    const Options options("render", arguments,
+    std::vector<Options::Known> known = paper_options();
+    known.insert(known.end(),
                           {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}, {"--crop", true}, {"--set", true}, {"--reproducible", false}, {"--frames", true}, {"--animate", true},
-                           {"--exact", false}, {"--aov", true}});
+                           {"--camera", true}, {"--exact", false}, {"--aov", true}});
+    const Options options("render", arguments, known);
     const std::string output = options.required("-o", "the image file to write");
     RenderOptions how = read_render_options(options);
     how.aovs = read_aovs(options, output);
@@ -55,12 +75,14 @@ int run(const std::vector<std::string>& arguments) {
     if (options.has("--frames") || options.has("--animate")) {
         const auto frames = frames_of(options, output);
         how.also_fit = points_of(frames, options);
-        for (const Frame& f : frames) render_one(options.scene(f.parameters), f.path, how, options.quiet());
+        for (const Frame& f : frames) render_one(scene_of(options, f.parameters), f.path, how, options);
         return kSuccess;
     }
-    check_image_path(output);
-    check_outputs(options, {{"-o", output}}, {{"SCENE", options.scene_path()}});
-    render_one(options.scene(), output, how, options.quiet());
+    check_picture_path(options, output);
+    std::vector<NamedFile> files;
+    for (const std::string& file : paper_files(output)) files.push_back({"-o", file});
+    check_outputs(options, files, {{"SCENE", options.scene_path()}});
+    render_one(scene_of(options), output, how, options);
     return kSuccess;
 }
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 #include "error.h"
 #include "isoparm_version.h"
+#include "paper.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -27,7 +29,64 @@ std::vector<int> whole_numbers(const std::string& text, char separator, std::siz
     }
     return r.size() == count ? r : std::vector<int>{};
 }
+
+/// "84mm" in points of 1/72 inch; 0 when it is no such length.
+double length_in_points(const std::string& text) {
+    const char* end = text.data() + text.size();
+    double x = 0;
+    const auto [stop, error] = std::from_chars(text.data(), end, x);
+    if (error != std::errc() || !std::isfinite(x)) return 0;
+    const std::string unit(stop, end);
+    for (const auto& [name, points] : {std::pair{"mm", 72 / 25.4}, {"cm", 720 / 25.4}, {"in", 72.0}, {"pt", 1.0}})
+        if (unit == name) return x * points;
+    return 0;
+}
+
+/// How large the picture is printed, and its letters.
+void read_page(const Options& options, RenderOptions& how) {
+    const double dpi = options.number("--dpi").value_or(300);
+    if (!(dpi >= 10 && dpi <= 4800)) options.fail("--dpi: found " + quoted(*options.value("--dpi")) + ", expected 10 to 4800 pixels an inch");
+    how.pixels_per_point = dpi / 72;
+    if (const auto width = options.value("--width")) {
+        if (options.has("--size")) options.fail("found both --width and --size, expected one of them: --width with --dpi gives the size in pixels");
+        const double points = length_in_points(*width), pixels = points * dpi / 72;
+        if (!(points >= 0.99 * 72 / 25.4 && points <= 72 / 25.4 * 2001)) options.fail("--width: found " + quoted(*width) + ", expected a width from 1mm to 2000mm with a unit: mm, cm, in or pt, such as 84mm");
+        if (!(pixels >= 16 && pixels <= 32768)) options.fail("--width " + *width + " at " + to_text(dpi) + " pixels an inch is " + to_text(std::round(pixels)) + " pixels wide, expected 16 to 32768: change --dpi");
+        how.width = static_cast<int>(std::lround(pixels));
+        how.pixels_per_point = how.width / points;
+    }
+    if (const auto size = options.value("--font-size")) {
+        how.letter_points = length_in_points(*size);
+        if (!(*how.letter_points >= 1 && *how.letter_points <= 500)) options.fail("--font-size: found " + quoted(*size) + ", expected 1pt to 500pt, such as 8pt");
+    }
+}
 }  // namespace
+
+const std::vector<Options::Known>& paper_options() {
+    static const std::vector<Options::Known> all{{"--width", true}, {"--dpi", true}, {"--font-size", true}, {"--text", true}};
+    return all;
+}
+
+void check_picture_path(const Options& options, const std::string& path) {
+    const bool outlines = options.word("--text", {"fonts", "outlines"}) == "outlines";
+    if (!is_paper(path)) {
+        check_image_path(path);
+        if (options.has("--text")) options.fail("--text: found the picture " + quoted(path) + ", expected a .pdf or .svg, whose letters may be text or outlines");
+        return;
+    }
+    if (outlines && paper_files(path).size() > 1) options.fail("--text outlines: found " + quoted(path) + ", expected a .pdf or .svg: the letters of a .tex are the document's");
+}
+
+RenderOptions rendering_of(RenderOptions how, const std::string& path) {
+    how.vectors = is_paper(path);
+    return how;
+}
+
+void write_picture(const Options& options, const std::string& path, const Scene& scene, const RenderOptions& how, const Picture& picture) {
+    const Metadata metadata = metadata_of(scene, picture);
+    if (!is_paper(path)) return write_image(path, picture.image, picture.layers, metadata);
+    write_paper(path, {picture.image, picture.drawn, how.pixels_per_point, scene.title, options.word("--text", {"fonts", "outlines"}) == "outlines"}, metadata);
+}
 
 RenderOptions read_render_options(const Options& options) {
     RenderOptions how;
@@ -37,6 +96,7 @@ RenderOptions read_render_options(const Options& options) {
         how.width = n[0];
         how.height = n[1];
     }
+    read_page(options, how);
     if (const auto samples = options.integer("--samples", 1, 65536)) how.samples = *samples;
     how.tolerance = options.tolerance();
     if (const auto crop = options.value("--crop")) {
@@ -62,7 +122,7 @@ std::vector<Aov> read_aovs(const Options& options, const std::string& output) {
         else if (known != names.end()) wanted[static_cast<std::size_t>(known - names.begin())] = true;
         else options.fail("--aov: found " + quoted(name) + ", expected all, or some of " + listed(names) + " with commas between" + did_you_mean(name, names));
     }
-    if (!holds_layers(output)) options.fail("--aov: found " + quoted(output) + ", expected a file with the extension .exr, which alone holds further channels");
+    if (is_paper(output) || !holds_layers(output)) options.fail("--aov: found " + quoted(output) + ", expected a file with the extension .exr, which alone holds further channels");
     std::vector<Aov> aovs;
     for (const AovKind& k : all_aovs())
         if (wanted[static_cast<std::size_t>(k.aov)]) aovs.push_back(k.aov);

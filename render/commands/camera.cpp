@@ -1,0 +1,58 @@
+#include <cmath>
+#include <iostream>
+#include <numbers>
+
+#include "commands/render_options.h"
+#include "error.h"
+#include "overlay.h"
+#include "panels.h"
+
+namespace isoparm {
+
+namespace {
+
+constexpr const char* kHelp = R"(usage: isoparm camera print SCENE [--size WxH | --width W] [--set p=v] ...
+
+Prints the camera with which isoparm render draws the scene, with everything that "fit" leaves open decided: a JSON
+object for the scene's "camera", or a file for render --camera FILE, so that several pictures share it. Of panels, that
+of the first without a camera of its own.
+
+--size, --width, --dpi, --font-size, --set   as in isoparm render
+--quiet           no messages; --threads N  at most N threads
+)";
+
+std::string listed_numbers(const Point& p) { return "[" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + "]"; }
+
+Camera camera_of(const Scene& scene, const RenderOptions& how) {
+    const int width = how.width ? how.width : scene.image.width;
+    const int height = how.height ? how.height : how.width ? static_cast<int>(std::lround(double(width) * scene.image.height / scene.image.width)) : scene.image.height;
+    std::optional<double> letter;
+    if (how.letter_points) letter = *how.letter_points * how.pixels_per_point;
+    const auto views = views_of(scene, width, height, {}, letter);
+    std::size_t k = 0;
+    while (k + 1 < views.size() && scene.panels[k].camera) ++k;
+    const View& v = views[k];
+    return make_camera(v.camera, v.fitted, v.width, v.height, room_for_text(v.objects, v.letter));
+}
+
+int run(const std::vector<std::string>& arguments) {
+    std::vector<Options::Known> known = paper_options();
+    known.insert(known.end(), {{"--size", true}, {"--set", true}});
+    const Options options("camera", arguments, known);
+    if (options.words().size() != 2 || options.words()[0] != "print") options.fail("expected: isoparm camera print SCENE");
+    const Scene scene = options.scene_at(options.words()[1]);
+    const double size = finite_diagonal(scene, bounding_box(scene));
+    const Camera c = camera_of(scene, read_render_options(options));
+    const Bounds box = bounding_box(scene);
+    const double depth = c.depth(0.5 * (box.low + box.high));
+    const Point target = c.eye + (depth > 0 ? depth : size > 0 ? size : 1) * c.forward;
+    const std::string view = c.orthographic ? "\"orthographic\": " + to_text(2 * c.half_height) : "\"fov\": " + to_text(2 * std::atan(c.half_height) * 180 / std::numbers::pi);
+    std::cout << "{ \"eye\": " << listed_numbers(c.eye) << ", \"target\": " << listed_numbers(target) << ", \"up\": " << listed_numbers(c.up) << ", " << view << " }\n";
+    return kSuccess;
+}
+
+}  // namespace
+
+const Command camera_command = {"camera", "the camera of a picture, for others", kHelp, run};
+
+}  // namespace isoparm

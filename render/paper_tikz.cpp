@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "isoparm_version.h"
+#include "palette.h"
+#include "paper.h"
+#include "text_cairo.h"
+
+namespace isoparm {
+namespace {
+
+std::string number(double x, const char* format = "%.3f") {
+    char text[64];
+    std::snprintf(text, sizeof text, format, x);
+    std::string s = text;
+    s.erase(s.find_last_not_of('0') + 1);
+    if (s.back() == '.') s.pop_back();
+    return s == "-0" ? "0" : s;
+}
+std::string color_of(const Color& c) {
+    const auto byte = [](double x) { return std::to_string(std::lround(255 * std::clamp(srgb_from_linear(std::max(0.0, x)), 0.0, 1.0))); };
+    return "{rgb,255:red," + byte(c.x) + ";green," + byte(c.y) + ";blue," + byte(c.z) + "}";
+}
+
+class Writer {
+public:
+    explicit Writer(const PaperFigure& figure) : figure_(figure) {}
+
+    std::string run(const std::string& raster) {
+        const int width = figure_.raster.width, height = figure_.raster.height;
+        out_ = "% Made by isoparm " ISOPARM_VERSION ". \\input it where the packages tikz and amsmath are loaded; " + raster + " lies beside it.\n";
+        out_ += "\\begin{tikzpicture}[x=1bp,y=-1bp,line cap=round,line join=round]\n";
+        out_ += "\\useasboundingbox (0,0) rectangle " + at({double(width), double(height)}) + ";\n";
+        out_ += "\\node[inner sep=0pt,outer sep=0pt,anchor=north west] at (0,0) {\\includegraphics[width=" + in_points(width) + ",height=" + in_points(height) + "]{" + raster + "}};\n";
+        for (const DrawnPart& part : figure_.parts) add(part);
+        return out_ + "\\end{tikzpicture}%\n";
+    }
+
+private:
+    std::string in_points(double pixels) const { return number(pixels / figure_.pixels_per_point) + "bp"; }
+    /// In points: numbers of TeX end at 16383.
+    std::string at(const Vec2& p) const { return "(" + number(p.x / figure_.pixels_per_point) + "," + number(p.y / figure_.pixels_per_point) + ")"; }
+    static std::string opacity(const DrawingItem& item) { return item.opacity < 1 ? ",opacity=" + number(item.opacity) : ""; }
+
+    void add(const DrawnPart& part) {
+        if (part.drawing.empty()) return;
+        out_ += "\\begin{scope}[shift={" + at({double(part.x), double(part.y)}) + "}]\n\\clip (0,0) rectangle " + at({double(part.width), double(part.height)}) + ";\n";
+        for (const DrawingItem& item : part.drawing)
+            std::visit([&](const auto& shape) { add(shape, item); }, item.shape);
+        out_ += "\\end{scope}\n";
+    }
+    void path(const std::vector<Vec2>& points) {
+        for (std::size_t i = 0; i < points.size(); ++i) out_ += (i == 0 ? " " : i % 8 == 0 ? "\n  -- " : " -- ") + at(points[i]);
+    }
+    void add(const Polyline& line, const DrawingItem& item) {
+        out_ += "\\draw[line width=" + in_points(line.width) + ",draw=" + color_of(item.color) + opacity(item) + (line.round ? "" : ",line cap=butt");
+        if (!line.dash.empty()) {
+            out_ += ",dash pattern=";
+            for (std::size_t k = 0; k < line.dash.size() * (1 + line.dash.size() % 2); ++k)
+                out_ += std::string(k > 0 ? " " : "") + (k % 2 == 0 ? "on " : "off ") + in_points(line.dash[k % line.dash.size()]);
+        }
+        out_ += "]";
+        path(line.points);
+        for (const auto& other : line.more) path(other);
+        out_ += ";\n";
+    }
+    void add(const Filled& area, const DrawingItem& item) {
+        out_ += "\\fill[fill=" + color_of(item.color) + opacity(item) + "]";
+        path(area.outline);
+        out_ += " -- cycle;\n";
+    }
+    /// Centred where isoparm's own letters would be: the document's may be wider.
+    void add(const Text& text, const DrawingItem& item) {
+        const TextBox box = text_box(text.text, text.size);
+        const double middle = 0.5 * (box.left + box.right);
+        const Vec2 base = text.turned ? Vec2{text.at.x, text.at.y - middle} : Vec2{text.at.x + middle, text.at.y};
+        const double points = text.size / figure_.pixels_per_point;
+        out_ += "\\node[inner sep=0pt,outer sep=0pt,anchor=base" + std::string(text.turned ? ",rotate=90" : "") + ",text=" + color_of(item.color) + opacity(item) + ",font=\\fontsize{" +
+                number(points, "%.2f") + "bp}{" + number(1.2 * points, "%.2f") + "bp}\\selectfont] at " + at(base) + " {" + tex_of(text.text) + "};\n";
+    }
+
+    const PaperFigure& figure_;
+    std::string out_;
+};
+
+}  // namespace
+
+std::string tikz_text(const PaperFigure& figure, const std::string& raster) { return Writer(figure).run(raster); }
+
+}  // namespace isoparm
