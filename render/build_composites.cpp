@@ -1,6 +1,6 @@
 // build_composites.cpp -- surfaces that a scene file makes of surfaces, or reads from other files.
 #include <algorithm>
-#include <filesystem>
+#include <cmath>
 
 #include "io/bv.h"
 #include "io/extension.h"
@@ -8,6 +8,7 @@
 #include "patches/transformed.h"
 #include "promises.h"
 #include "registry.h"
+#include "scene_include.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -42,7 +43,9 @@ DataReport together(const std::vector<Examined>& members) {
 DataReport moved(DataReport r, const Transform& map) {
     Transform linear = map;
     for (auto& row : linear.m) row[3] = 0;
-    for (Promise& p : r.promises) p.curve = transformed(p.curve, p.derivative == 0 ? map : linear);
+    double stretch = 0;
+    for (int k = 0; k < 3; ++k) stretch = std::max(stretch, std::hypot(map.m[0][k], map.m[1][k], map.m[2][k]));
+    for (Promise& p : r.promises) p.curve = transformed(p.curve, p.derivative == 0 ? map : linear), p.allowed *= stretch;
     return r;
 }
 }  // namespace
@@ -76,20 +79,9 @@ BuiltSurface build_transformed_surface(const Json& j, SceneBuilder& scene) {
 
 BuiltSurface build_file(const Json& j, SceneBuilder& scene) {
     const Json path = j.at("path", "the name of a .bv file, relative to the scene");
-    const std::string& name = scene.values().text(path, "the name of a .bv file, relative to the scene");
-    const std::filesystem::path file = std::filesystem::path(j.file()).parent_path() / name;
-    if (extension_of(file) != ".bv") path.expected("a file that ends in .bv (other formats are not read)");
-    std::error_code code;  // a pipe would wait, a device never end
-    if (std::filesystem::exists(file, code) && !std::filesystem::is_regular_file(file, code)) {
-        path.fail("found " + std::string(std::filesystem::is_directory(file, code) ? "a folder" : "a pipe or device") + ", expected a regular file");
-    }
-    std::string text;
-    try {
-        text = read_text_file(file.string());
-    } catch (const Error& e) {
-        path.fail("found a file that cannot be used, expected a BV file: " + std::string(e.what()));
-    }
-    return BuiltSurface(read_bv(text, file.string()));
+    if (extension_of(scene.values().text(path, "the name of a .bv file, relative to the scene")) != ".bv") path.expected("a file that ends in .bv (other formats are not read)");
+    const IncludedFile file = read_included(path, scene.values(), "a BV file");
+    return BuiltSurface(read_bv(file.text, file.path));
 }
 
 }  // namespace isoparm

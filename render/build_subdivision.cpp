@@ -1,11 +1,11 @@
 // build_subdivision.cpp -- limit surfaces of subdivision cages, from an OBJ file or given in the scene.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 #include "io/cage_obj.h"
 #include "registry.h"
+#include "scene_include.h"
 #include "subdivision.h"
 #include "suggest.h"
 
@@ -17,13 +17,10 @@ constexpr double kLargest = 1e100;  // as in files: squares and products of leng
 constexpr std::size_t kMostCorners = 500;  // of a face, as make_subdivision() has it
 
 Cage read_cage(const Json& j, const SceneValues& values) {
-    const std::string& name = values.text(j, "the name of an .obj file, relative to the scene, or a cage");
-    const std::filesystem::path file = std::filesystem::path(j.file()).parent_path() / name;
-    std::error_code code;  // a pipe would wait, a device never end
-    if (std::filesystem::exists(file, code) && !std::filesystem::is_regular_file(file, code))
-        j.fail("found " + std::string(std::filesystem::is_directory(file, code) ? "a folder" : "a pipe or device") + ", expected a regular file");
+    values.text(j, "the name of an .obj file, relative to the scene, or a cage");
+    const IncludedFile file = read_included(j, values, "an OBJ cage");
     try {
-        return read_cage_obj(read_text_file(file.string()), file.string());
+        return read_cage_obj(file.text, file.path);
     } catch (const Error& e) {
         j.fail("found a file that cannot be used, expected an OBJ cage: " + std::string(e.what()));
     }
