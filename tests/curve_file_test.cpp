@@ -122,8 +122,8 @@ TEST(BrepCurves, ErrorsNameThePlace) {
     for (int k = 0; k < 50; ++k) nested += "8 0 1 ";
     fails(nested + kCircle, "trimmed curves of trimmed curves");
     std::string curve = "7 0 0 1 10000 10000", many = "CASCADE Topology V2\nCurves 11\n";
-    for (int i = 0; i < 10000; ++i) curve += " " + std::to_string(i) + " 0 0";
-    for (int i = 0; i < 10000; ++i) curve += " " + std::to_string(i) + (i % 9999 == 0 ? " 2" : " 1");
+    for (int i = 0; i < 10000; ++i) (curve += ' ') += std::to_string(i) += " 0 0";
+    for (int i = 0; i < 10000; ++i) (curve += ' ') += std::to_string(i) += i % 9999 == 0 ? " 2" : " 1";
     for (int k = 0; k < 11; ++k) many += curve + "\n";
     EXPECT_EQ(error_of(many), "a.brep:13:9: found '10000', expected at most 100000 poles in one file");
     EXPECT_EQ(error_of("solid box\n"), "a.brep:1:1: found 'solid', expected DBRep_DrawableShape or CASCADE Topology, the begin of an OpenCASCADE file in ASCII");

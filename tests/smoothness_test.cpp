@@ -100,7 +100,7 @@ TEST(CurvatureMap, StripesAreTheAnglesOfMirroredRays) {
     Camera camera;
     camera.right = {1, 0, 0}, camera.up = {0, 0, 1}, camera.forward = {0, 1, 0};
     for (int degree = 1; degree < 180; degree += 3) {
-        const double a = degree * std::numbers::pi / 180;
+        const double a = (degree + 0.5) * std::numbers::pi / 180;
         EXPECT_EQ(in_dark_stripe(by, {std::sin(a), 0, std::cos(a)}, camera.forward, camera), degree % 10 < 5) << degree;
         // A mirror turned by half an angle turns the ray by the whole; the lamps run along `right`.
         ColorBy mirror = by;
@@ -174,7 +174,7 @@ TEST(Smoothness, PicturesShowTheColoursOfTheMap) {
         const float* pixel = p.image.at(32, 24);
         const double K = curvature_of(load_scene(t / "s.json").surfaces[0].patches[0].patch, {0.5, 0.5}, What::gaussian, false);
         const Color expected = diverging(K / 8);
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(pixel[k], expected[k], 0.02) << exact;
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(pixel[k], expected[k], 0.04) << exact << ": a pixel is a twentieth of the surface";
     }
     write_all(t / "z.json", scene_of(R"({ "surface": "S", "color_by": "reflection", "stripes": 60 })"));
     const Picture zebra = render(load_scene(t / "z.json"), {});
