@@ -112,11 +112,13 @@ DataReport examine(const GordonNetwork& given, GordonBlend blend, const Rect& do
         for (std::size_t j = 0; j < u.size(); ++j)
             keep_worst(crossing, condition("positions, worst of all: " + numbered("u_curves", j) + "(" + to_text(given.u_nodes[i]) + ") = " + numbered("v_curves", i) + "(" + to_text(given.v_nodes[j]) + ")",
                                            u[j](given.u_nodes[i]), v[i](given.v_nodes[j]), size));
+    if (given.tolerance > 0 && crossing->gap <= given.tolerance) crossing->remedy = "tolerance: the surface passes midway";
     DataReport r{{*crossing}, {}, {}};
     if (blend == GordonBlend::hermite && !has_corner(u) && !has_corner(v)) r.smooth.push_back(0);
     const auto cut = [](const Curve& c, double from, double to) { return c.begin() < from || c.end() > to ? segment(c, from, to, false) : c; };
     for (std::size_t j = 0; j < u.size(); ++j) r.promises.push_back({numbered("u_curves", j) + " is interpolated", line_v(given.v_nodes[j], domain), cut(u[j], domain.u0, domain.u1), 0, 0});
     for (std::size_t i = 0; i < v.size(); ++i) r.promises.push_back({numbered("v_curves", i) + " is interpolated", line_u(given.u_nodes[i], domain), cut(v[i], domain.v0, domain.v1), 0, 0});
+    for (Promise& p : r.promises) p.allowed = given.tolerance;
     return r;
 }
 

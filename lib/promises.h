@@ -29,6 +29,7 @@ struct Promise {
     Curve curve;
     int derivative = 0;
     std::size_t patch = 0;  // of the surface's patches
+    double allowed = 0;     // a residual up to this is what was asked for, whatever the tolerance of the check
 };
 struct DataReport {
     std::vector<Condition> conditions;

@@ -1,13 +1,14 @@
 // build_composites.cpp -- surfaces that a scene file makes of surfaces, or reads from other files.
 #include <algorithm>
+#include <cmath>
 
-#include "included_file.h"
 #include "io/bv.h"
 #include "io/extension.h"
 #include "curves/modify.h"
 #include "patches/transformed.h"
 #include "promises.h"
 #include "registry.h"
+#include "scene_include.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -42,7 +43,9 @@ DataReport together(const std::vector<Examined>& members) {
 DataReport moved(DataReport r, const Transform& map) {
     Transform linear = map;
     for (auto& row : linear.m) row[3] = 0;
-    for (Promise& p : r.promises) p.curve = transformed(p.curve, p.derivative == 0 ? map : linear);
+    double stretch = 0;
+    for (int k = 0; k < 3; ++k) stretch = std::max(stretch, std::hypot(map.m[0][k], map.m[1][k], map.m[2][k]));
+    for (Promise& p : r.promises) p.curve = transformed(p.curve, p.derivative == 0 ? map : linear), p.allowed *= stretch;
     return r;
 }
 }  // namespace
@@ -76,16 +79,9 @@ BuiltSurface build_transformed_surface(const Json& j, SceneBuilder& scene) {
 
 BuiltSurface build_file(const Json& j, SceneBuilder& scene) {
     const Json path = j.at("path", "the name of a .bv file, relative to the scene");
-    const std::string& name = scene.values().text(path, "the name of a .bv file, relative to the scene");
-    if (extension_of(name) != ".bv") path.expected("a file that ends in .bv (other formats are not read)");
-    const std::string file = included_file(path, name);
-    std::string text;
-    try {
-        text = read_text_file(file);
-    } catch (const Error& e) {
-        path.fail("found a file that cannot be used, expected a BV file: " + std::string(e.what()));
-    }
-    return BuiltSurface(read_bv(text, file));
+    if (extension_of(scene.values().text(path, "the name of a .bv file, relative to the scene")) != ".bv") path.expected("a file that ends in .bv (other formats are not read)");
+    const IncludedFile file = read_included(path, scene.values(), "a BV file");
+    return BuiltSurface(read_bv(file.text, file.path));
 }
 
 }  // namespace isoparm

@@ -1,4 +1,6 @@
 // build_coons.cpp -- surfaces that a scene file gives by curves to interpolate: boolean sums over a rectangle.
+#include "network_fit.h"
+#include "patches/compatibility.h"
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
 #include "patches/generalized_coons.h"
@@ -48,6 +50,21 @@ std::vector<double> nodes(const Json& j, const char* key, const SceneValues& val
     return values.numbers(j.at(key, "the parameters of the curves"), 2, most_nodes, "parameters");
 }
 
+/// A network without nodes: where its curves cross is found.
+GordonNetwork on_a_grid(const GordonNetwork& given, const Json& j, SceneBuilder& scene, std::string& detail) {
+    NetworkFit fit = fit_network(given.u_curves, given.v_curves);
+    const double tolerance = std::max(compatibility_tolerance * fit.size, given.tolerance);
+    if (!(fit.gap <= tolerance)) {
+        const std::string open = std::to_string(fit.open) + " of " + std::to_string(given.u_curves.size() * given.v_curves.size()) + " crossings are open (sampled), widest " + fit.where;
+        throw IncompatibleError("u_curves and v_curves meet", fit.gap, tolerance, open + ": bring the curves together, or give \"tolerance\" of at least the gap: the surface then passes midway, and isoparm check proves how far it misses the curves");
+    }
+    if (!fit.changes.empty()) scene.note(j, "curves put on a grid: " + fit.changes);
+    if (fit.open > 0) scene.note(j, std::to_string(fit.open) + " crossings are open, within the tolerance: widest " + to_text(fit.gap) + ", " + fit.where);
+    detail = "crossings found, widest gap " + to_text(fit.gap) + " (sampled)";
+    fit.network.tolerance = given.tolerance;
+    return fit.network;
+}
+
 }  // namespace
 
 CoonsCurves frame_of(const Json& j, SceneBuilder& scene) {
@@ -75,13 +92,23 @@ BuiltSurface build_gordon(const Json& j, SceneBuilder& scene) {
     static constexpr GordonBlend blends[] = {GordonBlend::lagrange, GordonBlend::hermite};
     const SceneValues& values = scene.values();
     const auto blend = j.find("blend");
-    const GordonNetwork network{scene.curves(j.at("u_curves", "the curves x(u, v_nodes[j])"), 2, most_nodes), nodes(j, "v_nodes", values),
-                                scene.curves(j.at("v_curves", "the curves x(u_nodes[i], v)"), 2, most_nodes), nodes(j, "u_nodes", values)};
+    const auto tolerance = j.find("tolerance");
+    std::string detail;
+    GordonNetwork network{scene.curves(j.at("u_curves", "the curves x(u, v_nodes[j])"), 2, most_nodes), {}, scene.curves(j.at("v_curves", "the curves x(u_nodes[i], v)"), 2, most_nodes), {}};
+    if (tolerance) network.tolerance = values.positive(*tolerance, "a positive tolerance in scene units");
+    if (j.find("u_nodes") || j.find("v_nodes")) {
+        network.v_nodes = nodes(j, "v_nodes", values);
+        network.u_nodes = nodes(j, "u_nodes", values);
+    } else {
+        network = on_a_grid(network, j, scene, detail);
+    }
     const GordonBlend kind = blend ? blends[values.word(*blend, {"lagrange", "hermite"})] : GordonBlend::lagrange;
     const Part part = part_of(j, values);
     return fitted(network, j, scene, [&](const GordonNetwork& n) {
         const Patch patch = make_gordon(n, kind, part);
-        return examined(patch, part, [n, kind, domain = patch.rect()] { return examine(n, kind, domain); });
+        BuiltSurface s = examined(patch, part, [n, kind, domain = patch.rect()] { return examine(n, kind, domain); });
+        s.detail = detail;
+        return s;
     });
 }
 

@@ -91,6 +91,15 @@ BuiltCurve build_isocurve(const Json& j, SceneBuilder& scene) {
     return u ? make_isocurve(patch, Along::v, scene.values().number(*u)) : make_isocurve(patch, Along::u, scene.values().number(*v));
 }
 
+BuiltCurve build_file_curve(const Json& j, SceneBuilder& scene) {
+    const auto all = scene.curves_of_file(j);
+    const auto index = j.find("index");
+    if (!index && all.size() != 1) j.fail("found a file of " + std::to_string(all.size()) + " curves and no \"index\", expected which of them, counted from 0");
+    const std::size_t k = index ? std::size_t(scene.values().integer(*index, 0, int(all.size()) - 1, "the index of a curve of the file")) : 0;
+    if (!all[k].curve) (index ? *index : j).expected("a curve that can be used; this one is " + all[k].unusable);
+    return {*all[k].curve, all[k].points.empty() ? ControlNet{} : polygon(all[k].points)};
+}
+
 BuiltCurve build_reverse(const Json& j, SceneBuilder& scene) {
     const BuiltCurve c = scene.curve(j.at("curve", "the curve to reverse"));
     return {reversed(c.curve), c.net};

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <set>
 
-#include "included_file.h"
 #include "io/cage_obj.h"
 #include "registry.h"
+#include "scene_include.h"
 #include "subdivision.h"
 #include "suggest.h"
 
@@ -17,10 +17,10 @@ constexpr double kLargest = 1e100;  // as in files: squares and products of leng
 constexpr std::size_t kMostCorners = 500;  // of a face, as make_subdivision() has it
 
 Cage read_cage(const Json& j, const SceneValues& values) {
-    const std::string& name = values.text(j, "the name of an .obj file, relative to the scene, or a cage");
-    const std::string file = included_file(j, name);
+    values.text(j, "the name of an .obj file, relative to the scene, or a cage");
+    const IncludedFile file = read_included(j, values, "an OBJ cage");
     try {
-        return read_cage_obj(read_text_file(file), file);
+        return read_cage_obj(file.text, file.path);
     } catch (const Error& e) {
         j.fail("found a file that cannot be used, expected an OBJ cage: " + std::string(e.what()));
     }

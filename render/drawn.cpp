@@ -1,5 +1,6 @@
 #include "drawn.h"
 
+#include "comb.h"
 #include "error.h"
 
 namespace isoparm {
@@ -69,6 +70,7 @@ std::vector<Point> drawn_points(const Scene& scene, const std::vector<SceneObjec
             case SceneObject::Kind::curve: {
                 const Curve& c = curve_of(scene, o);
                 for (int i = 0; i <= 64; ++i) add_around(c(c.begin() + (c.end() - c.begin()) * i / 64), o.line.width > 0 ? 0 : radius, points);
+                for (const auto& tooth : comb_teeth(c, o.comb, size)) points.push_back(tooth[1]);
                 break;
             }
             case SceneObject::Kind::net:

@@ -5,9 +5,12 @@
 #include <numbers>
 
 #include "axes.h"
+#include "comb.h"
 #include "drawn.h"
 #include "flat_lines.h"
+#include "jump_heat.h"
 #include "labels.h"
+#include "legend.h"
 #include "outlines.h"
 #include "palette.h"
 #include "surface_lines.h"
@@ -21,6 +24,16 @@ constexpr double kMostLetters = 0.055;  // and of its panel's
 
 using Kind = SceneObject::Kind;
 
+/// Of the legends that are wanted, each once.
+std::vector<ColorScale> scales_of(const TracedScene& traced) {
+    std::vector<ColorScale> list;
+    for (const Thing& t : traced.things) {
+        const auto same = [&](const ColorScale& s) { return s.by.what == t.scale.by.what && s.low == t.scale.low && s.high == t.scale.high; };
+        if (t.scale.by.legend && std::none_of(list.begin(), list.end(), same)) list.push_back(t.scale);
+    }
+    return list;
+}
+
 class Overlay {
 public:
     Overlay(const Scene& scene, const TracedScene& traced, const Camera& camera, double pixel, double letter, bool isolines)
@@ -30,7 +43,8 @@ public:
           pixel_(pixel),
           size_(bounding_box(scene).diagonal()),
           letter_(letter),
-          isolines_(isolines) {
+          isolines_(isolines),
+          scales_(scales_of(traced)) {
         if (!(size_ > 0)) size_ = 1;
     }
 
@@ -41,6 +55,8 @@ public:
         for (const SceneObject& o : objects) add(o);
         for (const SceneObject& o : objects) add_labels(o);
         place_labels(requests_, obstacles_, camera_.width, camera_.height, drawing_);
+        const Drawing bars = legends(scales_, camera_.width + legend_room(objects, letter_, 2 * camera_.width), camera_.height, letter_);
+        drawing_.insert(drawing_.end(), bars.begin(), bars.end());
         return std::move(drawing_);
     }
 
@@ -50,11 +66,13 @@ private:
         const double radius = radius_of(o, size_);
         switch (o.kind) {
             case Kind::surface:
+                add_jumps(o);
                 if (!o.boundary) return;
                 for (const DrawnCurve& edge : drawn_edges(surface_of(scene_, o).patches, size_))
                     add(o, points_of(edge), curve_color(), 1, radius);
                 return;
             case Kind::curve:
+                add_comb(o);
                 return add(o, points_of(drawn(curve_of(scene_, o))), o.color.value_or(curve_color()), o.opacity,
                            radius);
             case Kind::net:
@@ -90,6 +108,27 @@ private:
         avoid(points, o.line.width > 0 ? 0 : radius);
         add_line(points, {color, opacity, o.line.width * pixel_, scaled(o.line.dash), o.line.hidden}, sight_, 0,
                  drawing_);
+    }
+    void add_jumps(const SceneObject& o) {
+        if (o.jumps.of == JumpHeat::Of::none) return;
+        const auto edges = hot_edges(surface_of(scene_, o).patches, o.jumps.of, size_);
+        const ColorScale scale = scale_of(o.jumps, edges);
+        for (const HotEdge& e : edges)
+            for (std::size_t k = 0; k + 1 < e.points.size(); ++k) {
+                const double jump = std::max(e.jumps[k], e.jumps[k + 1]);
+                if (jump >= 0) add_line(points_between(e.points[k], e.points[k + 1]), {scale.color(jump), 1, o.jumps.width * pixel_, {}, Hidden::hide}, sight_, 0, drawing_);
+            }
+        if (o.jumps.legend) scales_.push_back(scale);
+    }
+    void add_comb(const SceneObject& o) {
+        const LineLook look{o.comb.color.value_or(point_color()), o.opacity, o.comb.width * pixel_, {}, Hidden::show};
+        std::vector<Point> tips;
+        for (const auto& [foot, tip] : comb_teeth(curve_of(scene_, o), o.comb, size_)) {
+            add_line(points_between(foot, tip), look, sight_, 0, drawing_);
+            if (!tips.empty()) add_line(points_between(tips.back(), tip), look, sight_, 0, drawing_);
+            tips.push_back(tip);
+        }
+        avoid(tips, 0);
     }
     double radius_of_point(const SceneObject& o) const {
         if (o.line.width > 0) return 0.5 * o.line.width * pixel_ * camera_.pixel_size(camera_.depth(o.point));
@@ -222,6 +261,7 @@ private:
     Vec2 middle_;
     std::vector<Obstacle> obstacles_;
     std::vector<LabelRequest> requests_;
+    std::vector<ColorScale> scales_;  // for legends
     Drawing drawing_;
 };
 
@@ -230,7 +270,8 @@ private:
 Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced,
                 const Camera& camera, double pixel, double letter, bool isolines) {
     const auto vectors = [&](const SceneObject& o) {
-        return o.line.width > 0 || o.outline.line.width > 0 || (isolines && o.isolines.u + o.isolines.v > 0) || !o.label.text.empty() || !o.net_labels.empty() || o.kind == Kind::axes;
+        return o.line.width > 0 || o.outline.line.width > 0 || (isolines && o.isolines.u + o.isolines.v > 0) || !o.label.text.empty() || !o.net_labels.empty() || o.kind == Kind::axes ||
+               o.color_by.legend || o.jumps.of != JumpHeat::Of::none || o.comb.teeth > 0;
     };
     if (std::none_of(objects.begin(), objects.end(), vectors)) return {};
     return Overlay(scene, traced, camera, pixel, letter, isolines).run(objects);

@@ -9,6 +9,7 @@
 
 #include "camera.h"
 #include "error.h"
+#include "legend.h"
 #include "overlay.h"
 #include "paint.h"
 #include "panels.h"
@@ -257,8 +258,8 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
         if (!progress) return {};
         return [&progress, from, share](double fraction) { progress(from + share * fraction); };
     };
-    const Camera camera =
-        make_camera(view.camera, view.fitted, view.width, view.height, room_for_text(view.objects, view.letter));
+    const int seen = view.width - legend_room(view.objects, view.letter, view.width);
+    const Camera camera = make_camera(view.camera, view.fitted, seen, view.height, room_for_text(view.objects, view.letter));
     Picture picture;
     picture.tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
     auto start = std::chrono::steady_clock::now();

@@ -27,6 +27,7 @@ BuiltCurve build_interpolating_curve(const Json&, SceneBuilder&);
 BuiltCurve build_arc(const Json&, SceneBuilder&);
 BuiltCurve build_formula_curve(const Json&, SceneBuilder&);
 BuiltCurve build_isocurve(const Json&, SceneBuilder&);
+BuiltCurve build_file_curve(const Json&, SceneBuilder&);
 BuiltCurve build_reverse(const Json&, SceneBuilder&);
 BuiltCurve build_segment(const Json&, SceneBuilder&);
 BuiltCurve build_transformed_curve(const Json&, SceneBuilder&);

@@ -69,7 +69,7 @@ Cure<Network> cure(const Network& given) {
 Cure<GordonNetwork> cure(const GordonNetwork& given) {
     const CurveNetwork n{given.u_curves, given.v_curves, given.u_nodes, given.v_nodes};
     return cure_of<GordonNetwork>(diagnose_network(n), [&](const NetworkRepair& r) {
-        return GordonNetwork{r.u(r.swapped ? given.v_curves : given.u_curves), given.v_nodes, r.v(r.swapped ? given.u_curves : given.v_curves), given.u_nodes};
+        return GordonNetwork{r.u(r.swapped ? given.v_curves : given.u_curves), given.v_nodes, r.v(r.swapped ? given.u_curves : given.v_curves), given.u_nodes, given.tolerance};
     });
 }
 

@@ -77,6 +77,33 @@ struct Outline {
     double opacity = 1;
 };
 
+/// A surface coloured by its curvature, or striped as a polished one is by what it mirrors.
+struct ColorBy {
+    enum class What { none, gaussian, mean, k1, k2, reflection, isophotes } what = What::none;
+    std::optional<std::array<double, 2>> range;  // of the colours, low < high; default: of nearly all samples
+    double stripes = 24;                         // pairs of a light and a dark one in 360 degrees
+    std::optional<Point> direction;              // reflection: of the lamps; isophotes: toward the light
+    bool legend = false;
+    bool curvature() const { return what != What::none && what < What::reflection; }
+    bool striped() const { return what >= What::reflection; }
+};
+
+/// Lines along the edges where the patches of a surface join, and between the cells of a patch, coloured by how much jumps across them.
+struct JumpHeat {
+    enum class Of { none, g1, g2 } of = Of::none;  // the angle of the normals in degrees; the normal curvature across the edge
+    std::optional<double> top;                     // of the colours, which begin at 0; default: the largest, made round
+    double width = 4;                              // pixels
+    bool legend = false;
+};
+
+/// Teeth on a curve, away from its centres of curvature, each as long as `scale` times the curvature.
+struct Comb {
+    int teeth = 0;               // 0: no comb
+    std::optional<double> scale; // scene units squared; default: the longest is an eighth of the scene's size
+    double width = 1;            // pixels
+    std::optional<Color> color;
+};
+
 /// Coordinate axes through `origin`, each over its range; ticks in ascending order.
 struct Axes {
     struct Axis {
@@ -98,6 +125,9 @@ struct SceneObject {
     Material material;             // of traced light
     std::optional<double> radius;  // of tubes, rods and balls, scene units; default a fraction of the scene's size
     Isolines isolines;
+    ColorBy color_by;              // Kind::surface
+    JumpHeat jumps;                // Kind::surface
+    Comb comb;                     // Kind::curve
     bool boundary = false;         // draw the patches' boundary curves as tubes
     Outline outline;               // Kind::surface
     LineStyle line;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "registry.h"
+#include "scene_include.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -128,8 +129,27 @@ Patch SceneBuilder::patch(const Json& reference) {
     return s.patches.front().patch;
 }
 
+const std::vector<FileCurve>& SceneBuilder::curves_of_file(const Json& definition) {
+    const Json path = definition.at("path", expected_curve_file);
+    const std::string& name = values_.text(path, std::string(expected_curve_file) + ", relative to the scene");
+    if (const auto done = curve_files_.find(name); done != curve_files_.end()) return done->second;
+    const IncludedFile file = read_included(path, values_, expected_curve_file);
+    return curve_files_.emplace(name, read_curve_file(file.text, file.path)).first->second;
+}
+
 std::vector<Curve> SceneBuilder::curves(const Json& list, std::size_t least, std::size_t most) {
     std::vector<Curve> r;
+    if (list.is(Json::Kind::object)) {
+        list.allow_keys({"type", "path"});
+        const Json type = list.at("type", "\"file\"");
+        if (!type.is(Json::Kind::string) || type.string() != "file") type.expected("\"file\", or a list of curves");
+        for (const FileCurve& c : curves_of_file(list)) {
+            if (!c.curve) list.fail("curve " + std::to_string(r.size()) + " of the file is " + c.unusable + "; expected a list of those that can be used, each with its \"index\"");
+            r.push_back(*c.curve);
+        }
+        if (r.size() < least || (most > 0 && r.size() > most)) list.fail("found a file of " + std::to_string(r.size()) + " curves, expected " + (most == least ? "" : "at least ") + std::to_string(least) + (most > least ? ", at most " + std::to_string(most) : ""));
+        return r;
+    }
     for (const Json& c : values_.list(list, least, most, "curves")) r.push_back(curve(c).curve);
     return r;
 }

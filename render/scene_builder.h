@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/curve_file.h"
 #include "json.h"
 #include "patches/control_net.h"
 #include "scene.h"
@@ -45,7 +46,10 @@ public:
     BuiltSurface named_surface(const Json& definition);
     /// A surface that must be one patch.
     Patch patch(const Json& reference);
+    /// A list, or {"type": "file", "path": ...}: all curves of a file.
     std::vector<Curve> curves(const Json& list, std::size_t least, std::size_t most);
+    /// Of the file that the key "path" of a definition names; read once.
+    const std::vector<FileCurve>& curves_of_file(const Json& definition);
 
     std::vector<std::string> curve_names() const;
     std::vector<std::string> surface_names() const;
@@ -67,6 +71,7 @@ private:
     std::vector<Json> curves_, surfaces_;  // definitions, in the order of the file
     std::map<std::string, BuiltCurve> built_curves_;
     std::map<std::string, BuiltSurface> built_surfaces_;
+    std::map<std::string, std::vector<FileCurve>> curve_files_;  // by path
     std::vector<std::string> in_progress_;
     std::set<std::string> used_;
     std::vector<std::string> notes_;

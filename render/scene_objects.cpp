@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "scene_light.h"
 #include "suggest.h"
@@ -143,6 +144,53 @@ std::vector<Label> read_net_labels(const Json& j, const SceneValues& values, con
     return labels;
 }
 
+// ---- smoothness -----------------------------------------------------------------------------------------------------
+
+ColorBy read_color_by(const Json& j, const Json& object, const SceneValues& values) {
+    ColorBy by;
+    by.what = static_cast<ColorBy::What>(1 + values.word(j, {"gaussian", "mean", "k1", "k2", "reflection", "isophotes"}));
+    const auto range = object.find("range"), legend = object.find("legend"), stripes = object.find("stripes"), direction = object.find("direction");
+    for (const auto* key : {&range, &legend})
+        if (*key && !by.curvature()) (*key)->fail_at_key("found " + quoted((*key)->key()) + " with stripes, expected it with a curvature");
+    for (const auto* key : {&stripes, &direction})
+        if (*key && by.curvature()) (*key)->fail_at_key("found " + quoted((*key)->key()) + " with a curvature, expected it with \"reflection\" or \"isophotes\"");
+    if (range) by.range = values.interval(*range);
+    if (legend) by.legend = values.boolean(*legend);
+    if (stripes) by.stripes = values.in_range(*stripes, 1, 1000, "a number of pairs of stripes in 360 degrees, from 1 to 1000");
+    if (direction) {
+        by.direction = values.point(*direction);
+        if (!(length(*by.direction) > 0) || !std::isfinite(length(*by.direction))) direction->expected("a direction that is not zero");
+    }
+    return by;
+}
+
+JumpHeat read_jumps(const Json& j, const SceneValues& values) {
+    must_be_object(j, "{\"of\": \"g1\" or \"g2\"}");
+    j.allow_keys({"of", "top", "width", "legend"});
+    JumpHeat heat;
+    heat.of = static_cast<JumpHeat::Of>(1 + values.word(j.at("of", "what jumps: \"g1\" or \"g2\""), {"g1", "g2"}));
+    if (const auto top = j.find("top")) heat.top = values.positive(*top, "a positive number: the jump of the last colour");
+    if (const auto width = j.find("width")) heat.width = read_pixels(*width, values, 1000, "a width");
+    if (const auto legend = j.find("legend")) heat.legend = values.boolean(*legend);
+    return heat;
+}
+
+Comb read_comb(const Json& j, const SceneValues& values) {
+    Comb comb;
+    comb.teeth = 60;
+    if (j.is(Kind::boolean)) {
+        if (!j.boolean()) comb.teeth = 0;
+        return comb;
+    }
+    must_be_object(j, "true, or a comb {\"teeth\": count, \"scale\": s}");
+    j.allow_keys({"teeth", "scale", "width", "color"});
+    if (const auto teeth = j.find("teeth")) comb.teeth = values.integer(*teeth, 2, 10000, "a number of teeth");
+    if (const auto scale = j.find("scale")) comb.scale = values.positive(*scale, "a positive scale: the length of a tooth where the curvature is 1");
+    if (const auto width = j.find("width")) comb.width = read_pixels(*width, values, 1000, "a width");
+    if (const auto color = j.find("color")) comb.color = values.color(*color);
+    return comb;
+}
+
 // ---- axes -----------------------------------------------------------------------------------------------------------
 
 constexpr const char* kAxisNames[3] = {"x", "y", "z"};
@@ -211,16 +259,22 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
 
     SceneObject o;
     if (surface) {
-        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "outline", "material", "radius", "label", "line", "dash", "hidden"});
+        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "outline", "material", "radius", "label", "line", "dash", "hidden", "color_by", "range", "legend", "stripes", "direction", "jumps"});
         o.kind = SceneObject::Kind::surface;
         o.name = values.text(*surface, "the name of a surface");
         builder.surface(*surface);
         if (const auto back = j.find("back")) o.back = values.color(*back);
         if (const auto lines = j.find("isolines")) o.isolines = read_isolines(*lines, values);
+        if (const auto by = j.find("color_by")) o.color_by = read_color_by(*by, j, values);
+        else
+            for (const char* key : {"range", "legend", "stripes", "direction"})
+                if (const auto extra = j.find(key)) extra->fail_at_key("found " + quoted(key) + " without \"color_by\", expected what the colours say");
+        if (const auto jumps = j.find("jumps")) o.jumps = read_jumps(*jumps, values);
         if (const auto boundary = j.find("boundary")) o.boundary = values.boolean(*boundary);
         if (const auto outline = j.find("outline")) o.outline = read_outline(*outline, values);
     } else if (curve) {
-        j.allow_keys({"curve", "color", "opacity", "material", "radius", "label", "line", "dash", "hidden"});
+        j.allow_keys({"curve", "color", "opacity", "material", "radius", "label", "line", "dash", "hidden", "comb"});
+        if (const auto comb = j.find("comb")) o.comb = read_comb(*comb, values);
         o.kind = SceneObject::Kind::curve;
         o.name = values.text(*curve, "the name of a curve");
         builder.curve(*curve);

@@ -81,6 +81,18 @@ Met on_patch(const Thing& thing, const Ray& ray, const Hit& hit, const Vec2& at,
     return {ray.origin + hit.distance * ray.direction, thing.flipped ? -n : n};
 }
 
+/// Colours that stand for numbers are not lit, so that the legend has the same ones: only darker where the surface turns away.
+void color_by_curvature(const Thing& thing, Surfel& s) {
+    constexpr double kDark = 0.66;
+    const bool flipped = thing.part ? thing.part->flipped : thing.flipped;
+    const double value = curvature_of(*thing.patch, s.at, thing.scale.by.what, flipped);
+    const Color color = std::isfinite(value) ? thing.scale.color(value) : thing.front;
+    const Color here = (kDark + (1 - kDark) * std::fabs(dot(s.normal, s.view))) * color;
+    s.ink = s.ink_cover * s.ink + (1 - s.ink_cover) * here;
+    s.ink_cover = s.opacity;
+    s.opacity = 0;
+}
+
 Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, const Hit& hit, const Vec2& at, const PointFrame& frame) {
     const Thing& thing = scene.things[hit.geometry];
     const double clear = 4e-6 * scene.embree->radius() + thing.error;
@@ -122,6 +134,8 @@ Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, co
         s.ink_cover = isoline_cover(thing.isolines, {thing.patch->domain(), thing.patch->rect(), at.x, at.y, du, dv},
                                     camera, position, ray.direction);
     }
+    if (thing.scale.by.curvature()) color_by_curvature(thing, s);
+    else if (thing.scale.by.striped() && in_dark_stripe(thing.scale.by, s.normal, ray.direction, camera)) s.color = 0.06 * s.color;
     return s;
 }
 

@@ -95,6 +95,13 @@ private:
         thing.opacity = o.opacity;
         thing.material = o.material;
         thing.isolines = o.isolines;
+        if (o.color_by.what != ColorBy::What::none) {
+            std::vector<char> flipped(surface.patches.size());
+            for (const MeshPart& part : mesh.parts) flipped[part.member] = part.flipped;
+            thing.scale = settled(o.color_by, surface.patches, flipped);
+            if (!o.color) thing.front = Color{0.87, 0.87, 0.87};
+            if (!o.back) thing.back = thing.front;
+        }
         thing.mesh = &mesh;
         thing.inside_out = inside_out(mesh);
         if (o.opacity > 0) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "curvature_map.h"
 #include "embree_scene.h"
 #include "scene.h"
 
@@ -20,6 +21,7 @@ struct Thing {
     bool inside_out = false;  // triangles wind about the back
     bool flipped = false;     // without a mesh: its triangles would wind against S_u x S_v
     Isolines isolines;
+    ColorScale scale;  // scale.by.what: none, or what the colour says
     const Patch* patch = nullptr;
     const Mesh* mesh = nullptr;
     const MeshPart* part = nullptr;

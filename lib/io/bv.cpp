@@ -1,12 +1,10 @@
 #include "io/bv.h"
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 
-#include "error.h"
+#include "io/token_reader.h"
 #include "patches/bezier_triangle.h"
 #include "patches/tensor_bezier.h"
 #include "piecewise_bezier.h"
@@ -17,11 +15,12 @@ namespace {
 
 class BvReader {
 public:
-    BvReader(const std::string& text, const std::string& path) : text_(text), path_(path), group_(std::filesystem::path(path).stem().string()) {}
+    BvReader(const std::string& text, const std::string& path) : in_(text, path), group_(std::filesystem::path(path).stem().string()) {}
 
     Composite run() {
-        for (read(); !token_.empty(); read()) {
-            if (token_ == "Group" || token_ == "group" || token_ == "GROUP") read_group();
+        while (!in_.read().empty()) {
+            const std::string_view word = in_.token();
+            if (word == "Group" || word == "group" || word == "GROUP") read_group();
             else read_record();
         }
         if (result_.empty()) fail("at least one patch");
@@ -29,38 +28,10 @@ public:
     }
 
 private:
-    // ---- tokens
-    void read() {
-        at_ = std::min(text_.find_first_not_of(" \t\r\n\f\v", end_), text_.size());
-        end_ = std::min(text_.find_first_of(" \t\r\n\f\v", at_), text_.size());
-        token_ = std::string_view(text_).substr(at_, end_ - at_);
-    }
-    [[noreturn]] void fail(const std::string& expected) const {
-        std::size_t line = 1, start = 0;
-        for (std::size_t i = 0; i < at_; ++i)
-            if (text_[i] == '\n') ++line, start = i + 1;
-        std::string found = token_.empty() ? "the end of the file" : "'" + std::string(token_.substr(0, 40)) + "'";
-        for (char& c : found)
-            if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-        throw_input(path_ + ":" + std::to_string(line) + ":" + std::to_string(at_ - start + 1) + ": found " + found + ", expected " + expected);
-    }
-    // What it is for is put into words only when it is missing: most of a file is numbers.
-    template <class What> double number(What what) {
-        read();
-        std::string_view t = token_;
-        if (t.size() > 1 && t[0] == '+' && t[1] != '-') t.remove_prefix(1);
-        double x = 0;
-        const auto [end, error] = std::from_chars(t.data(), t.data() + t.size(), x);
-        if (t.empty() || error != std::errc() || end != t.data() + t.size() || !std::isfinite(x)) fail(what() + ", a finite number");
-        return x;
-    }
+    template <class What> double number(What what) { return in_.number(what); }
+    [[noreturn]] void fail(const std::string& expected) const { in_.fail(expected); }
     int degree(const std::string& what) {
-        const std::string expected = what + " of patch " + std::to_string(result_.size()) + ", a whole number from 1 to " + std::to_string(max_degree);
-        read();
-        int n = 0;
-        const auto [end, error] = std::from_chars(token_.data(), token_.data() + token_.size(), n);
-        if (token_.empty() || error != std::errc() || end != token_.data() + token_.size() || n < 1 || n > max_degree) fail(expected);
-        return n;
+        return in_.integer([&] { return what + " of patch " + std::to_string(result_.size()); }, 1, max_degree);
     }
     Point point(int k, double* weight = nullptr) {
         static constexpr const char* names[] = {"x", "y", "z", "weight"};
@@ -82,23 +53,21 @@ private:
 
     // ---- records
     void read_group() {
-        read();
-        int colour = 0;
-        const auto [end, error] = std::from_chars(token_.data(), token_.data() + token_.size(), colour);
-        if (token_.empty() || error != std::errc() || end != token_.data() + token_.size()) fail("the colour of the group, a whole number");
-        read();
-        if (token_.empty()) fail("the name of the group");
-        group_ = std::string(token_);
+        constexpr int most = std::numeric_limits<int>::max();
+        in_.integer([] { return std::string("the colour of the group"); }, -most - 1, most);
+        if (in_.read().empty()) fail("the name of the group");
+        group_ = std::string(in_.token());
     }
     void read_record() {
+        const std::string_view word = in_.token();
         const std::string kinds = "the kind of a patch (3, 4, 5 or 8) or Group";
-        if (token_ == "3") return triangle();
-        if (token_ == "4") {
+        if (word == "3") return triangle();
+        if (word == "4") {
             const int d = degree("the degree");
             return tensor(d, d, false);
         }
-        if (token_ == "5" || token_ == "8") {
-            const bool rational = token_ == "8";
+        if (word == "5" || word == "8") {
+            const bool rational = word == "8";
             const int du = degree("the degree in u"), dv = degree("the degree in v");
             return tensor(du, dv, rational);
         }
@@ -107,7 +76,7 @@ private:
             {"7", "kind 7, B-splines, is not supported"}, {"9", "kind 9, PN triangles, is not supported"},
             {"10", "kind 10, PN quads, is not supported"}};
         for (const auto& [kind, why] : refused)
-            if (token_ == kind) fail(kinds + "; " + why);
+            if (word == kind) fail(kinds + "; " + why);
         fail(kinds);
     }
     void tensor(int du, int dv, bool rational) {
@@ -126,12 +95,9 @@ private:
     }
     void add(Patch patch) { result_.push_back({group_ + "#" + std::to_string(in_group_[group_]++), std::move(patch)}); }
 
-    const std::string& text_;
-    const std::string& path_;
+    TokenReader in_;
     std::string group_;
     std::map<std::string, int> in_group_;
-    std::size_t at_ = 0, end_ = 0;
-    std::string_view token_;
     Composite result_;
 };
 

@@ -29,8 +29,11 @@ Patch make_gordon(const GordonNetwork& network, GordonBlend blend, Part part) {
     Grid<Point> corner(f.size(), std::vector<Point>(g.size()));
     for (std::size_t i = 0; i < f.size(); ++i)
         for (std::size_t j = 0; j < g.size(); ++j) {
-            corner[i][j] = f[i](v[j]);
-            require_equal("v_curves[" + std::to_string(i) + "](" + to_text(v[j]) + ") = u_curves[" + std::to_string(j) + "](" + to_text(u[i]) + ")", corner[i][j], g[j](u[i]), size);
+            const Point a = f[i](v[j]), b = g[j](u[i]);
+            const double gap = distance(a, b), tolerance = compatibility_tolerance * size + rounding_of(a, b);
+            if (!(gap <= std::max(tolerance, network.tolerance)))
+                throw IncompatibleError("v_curves[" + std::to_string(i) + "](" + to_text(v[j]) + ") = u_curves[" + std::to_string(j) + "](" + to_text(u[i]) + ")", gap, std::max(tolerance, network.tolerance));
+            corner[i][j] = gap <= tolerance ? a : 0.5 * (a + b);
         }
     if (blend == GordonBlend::hermite)
         return gordon(HatBasis{Cells(u)}, HatBasis{Cells(v)}, f, g, corner, part, {u.front(), u.back(), v.front(), v.back()});

@@ -55,10 +55,12 @@ struct Report {
     ContinuityOptions options;
     Continuity continuity;
     std::vector<std::string> failed, unproved;  // sentences
-    void judge(const std::string& what, double lower, double upper) {
-        if (upper <= options.tolerance) return;
-        const bool fails = lower > options.tolerance;
-        (fails ? failed : unproved).push_back(what + (fails ? ": no, by at least " + to_text(lower) : ": proved within " + to_text(upper) + " only") + ", expected at most " + to_text(options.tolerance));
+    double allowed(const Promise& p) const { return std::max(options.tolerance, p.allowed); }
+    void judge(const std::string& what, double lower, double upper) { judge(what, lower, upper, options.tolerance); }
+    void judge(const std::string& what, double lower, double upper, double tolerance) {
+        if (upper <= tolerance) return;
+        const bool fails = lower > tolerance;
+        (fails ? failed : unproved).push_back(what + (fails ? ": no, by at least " + to_text(lower) : ": proved within " + to_text(upper) + " only") + ", expected at most " + to_text(tolerance));
     }
 };
 
@@ -86,7 +88,7 @@ void examine_surfaces(const Scene& scene, Report& r) {
         e.residuals.resize(e.data.promises.size());
         tbb::parallel_for(std::size_t(0), e.residuals.size(), [&](std::size_t k) {
             const Promise& p = e.data.promises[k];
-            e.residuals[k] = bound_residual(s->patches[p.patch].patch, p, r.options.tolerance);
+            e.residuals[k] = bound_residual(s->patches[p.patch].patch, p, r.allowed(p));
         });
     }
 }
@@ -95,7 +97,7 @@ void judge_promises(Report& r) {
     std::size_t first = 0;  // of the surface's patches among those selected
     for (const Examined& e : r.surfaces) {
         for (std::size_t k = 0; k < e.residuals.size(); ++k) {
-            r.judge(e.name + ": " + e.data.promises[k].what, e.residuals[k].lower, e.residuals[k].inside);
+            r.judge(e.name + ": " + e.data.promises[k].what, e.residuals[k].lower, e.residuals[k].inside, r.allowed(e.data.promises[k]));
         }
         for (const Joint& j : r.continuity.lines) {
             if (j.a.member < first || std::find(e.data.smooth.begin(), e.data.smooth.end(), j.a.member - first) == e.data.smooth.end() || r.selection.surface[j.a.member] != e.name) continue;
@@ -147,7 +149,8 @@ std::string json_of(const Report& r, const Examined& e) {
             (c.remedy.empty() ? "null" : json_text(c.remedy)));
     for (std::size_t k = 0; k < e.residuals.size(); ++k) {
         const JumpBound& b = e.residuals[k];
-        add("\"what\": " + json_text(e.data.promises[k].what) + ", \"gap\": " + json_text(b.upper) + ", \"tolerance\": " + json_text(r.options.tolerance) + ", \"holds\": " + (b.inside <= r.options.tolerance ? "true" : "false") +
+        const double tolerance = r.allowed(e.data.promises[k]);
+        add("\"what\": " + json_text(e.data.promises[k].what) + ", \"gap\": " + json_text(b.upper) + ", \"tolerance\": " + json_text(tolerance) + ", \"holds\": " + (b.inside <= tolerance ? "true" : "false") +
             ", \"residual\": " + json_of(b));
     }
     return "{\"name\": " + json_text(e.name) + ", \"compatible\": " + (e.compatible() ? "true" : "false") + ", \"conditions\": [" + conditions + "]}";
@@ -208,7 +211,7 @@ void print_surface(std::ostream& out, const Report& r, const Examined& e) {
     }
     for (std::size_t k = 0; k < e.residuals.size(); ++k) {
         const JumpBound& b = e.residuals[k];
-        out << "  " << e.data.promises[k].what << ", proved within " << brief(b.inside, true) << (b.singular.empty() ? "" : " (but for 1/4096 of the edge at singular ends)") << (b.inside <= r.options.tolerance ? "" : " at worst, at least " + brief(b.lower, false)) << "\n";
+        out << "  " << e.data.promises[k].what << ", proved within " << brief(b.inside, true) << (b.singular.empty() ? "" : " (but for 1/4096 of the edge at singular ends)") << (b.inside <= r.allowed(e.data.promises[k]) ? "" : " at worst, at least " + brief(b.lower, false)) << "\n";
     }
 }
 

@@ -1,9 +1,10 @@
-// Any bytes as a BV file: patches, or an isoparm::Error that says where.
+// Any bytes as a BV, BREP or LOP file: patches or curves, or an isoparm::Error that says where.
 #include <cstdint>
 #include <string>
 
 #include "error.h"
 #include "io/bv.h"
+#include "io/curve_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     try {
@@ -13,5 +14,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
     } catch (const isoparm::Error&) {
     }
+    for (const char* path : {"fuzz.brep", "fuzz.lop"}) try {
+            for (const auto& c : isoparm::read_curve_file(std::string(reinterpret_cast<const char*>(data), size), path))
+                if (c.curve) (*c.curve)(c.curve->begin());
+        } catch (const isoparm::Error&) {
+        }
     return 0;
 }

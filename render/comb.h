@@ -1,0 +1,13 @@
+// comb.h -- curvature combs.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "scene.h"
+
+namespace isoparm {
+
+/// Foot and tip of every tooth, along the curve; at a break one of each side. `size`: of the scene.
+std::vector<std::array<Point, 2>> comb_teeth(const Curve& curve, const Comb& comb, double size);
+
+}  // namespace isoparm
