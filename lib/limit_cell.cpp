@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "curves/bezier.h"
+#include "error.h"
 #include "patches/bbg.h"
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
@@ -135,6 +136,7 @@ LimitCell::LimitCell(Domain domain, LimitFunction limit, int corner, double h, c
     origin_ = corner_of(domain, corner);
     s_ = h * (corner_of(domain, (corner + 1) % n) - origin_);
     t_ = h * (corner_of(domain, (corner + n - 1) % n) - origin_);
+    base_ = limit_(origin_.x, origin_.y).p;
     for (int k = 0; k < n; ++k) at_corners_[k] = corner_frame(k, tangents);
 }
 
@@ -142,6 +144,7 @@ LimitCell LimitCell::part(const Vec2& origin, const Vec2& s_end, const Vec2& t_e
     LimitCell cell(domain_, limit_);
     const auto image = [&](const Vec2& x) { return origin_ + x.x * s_ + x.y * t_; };
     cell.origin_ = image(origin), cell.s_ = image(s_end) - cell.origin_, cell.t_ = image(t_end) - cell.origin_;
+    cell.base_ = limit_(cell.origin_.x, cell.origin_.y).p;
     for (int k = 0; k < corners(); ++k) cell.at_corners_[k] = cell.corner_frame(k, {});
     return cell;
 }
@@ -149,7 +152,7 @@ LimitCell LimitCell::part(const Vec2& origin, const Vec2& s_end, const Vec2& t_e
 LimitFrame LimitCell::natural(double s, double t) const {
     const Vec2 at = origin_ + s * s_ + t * t_;
     const LimitFrame x = limit_(at.x, at.y);
-    return {x.p, along(x, s_), along(x, t_)};
+    return {x.p - base_, along(x, s_), along(x, t_)};
 }
 
 LimitFrame LimitCell::operator()(double s, double t) const {
@@ -190,6 +193,14 @@ LimitFrame LimitCell::corner_frame(int k, const FaceTangents& tangents) const {
 }
 
 Curve LimitCell::curve(const Vec2& from, const Vec2& to) const { return Curve(std::make_shared<CellCurve>(*this, from, to)); }
+
+std::optional<Patch> LimitMethod::on(const LimitCell& cell) const {
+    try {
+        return make(cell);
+    } catch (const IncompatibleError&) {
+        return {};
+    }
+}
 
 const std::vector<LimitMethod>& quad_methods() {
     static const std::vector<LimitMethod> methods{{"coons", coons, 4}, {"gregory", gregory, 8}};

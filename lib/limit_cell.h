@@ -1,7 +1,8 @@
 // limit_cell.h -- a cell of a limit surface at a corner of one of its faces, and surfaces over curves that are built on what the limit shows along its sides.
 //
 // Local parameters (s,t): (0,0) is the corner, s grows along the side to the face's next corner, t along the side to the one before. [0,1]^2 or the triangle
-// s, t >= 0, s + t <= 1. So normals keep their side whatever corner the cell is at.
+// s, t >= 0, s + t <= 1. So normals keep their side whatever corner the cell is at. Positions are relative to the limit at the corner: a small cell far from
+// the origin keeps its digits.
 //
 // At an extraordinary vertex derivatives in the face's parameters vanish (valence 3) or grow beyond all bounds (5 and more: by 2 lambda a halving). In their place
 // stand the limit's tangents, in the direction that the masks give and so long that the cubic between the ends of the side goes as far along it as the limit does at half way.
@@ -55,6 +56,7 @@ private:
     LimitFunction limit_;
     int corner_ = 0;
     Vec2 origin_{0, 0}, s_{1, 0}, t_{0, 1};
+    Point base_{0, 0, 0};
     bool whole_ = false;
     std::array<LimitFrame, 4> at_corners_;
 };
@@ -64,6 +66,8 @@ struct LimitMethod {
     std::string name;
     Patch (*make)(const LimitCell& cell);
     int order;  // approximation order over regular cells: the deviation falls by 2^order a halving
+    /// Nothing over cells that have shrunk to rounding, whose data do not fit together.
+    std::optional<Patch> on(const LimitCell& cell) const;
 };
 /// Quads: "coons", bilinear, on the limit's own curves; "gregory": cubic curves, cross derivatives, rational twists.
 const std::vector<LimitMethod>& quad_methods();

@@ -65,16 +65,17 @@ LevelMeasures measure_edge(const Patch& a, const Patch& b, int samples) {
 }
 
 using Levels = std::vector<std::optional<LevelMeasures>>;
-/// One vertex by one method.
-Levels measure_vertex(const LimitFaces& limits, const ExtraordinaryVertex& vertex, const LimitMethod& method, const LevelOptions& options) {
+/// One vertex by one method. Cells as small as the noise are not measured.
+Levels measure_vertex(const LimitFaces& limits, const ExtraordinaryVertex& vertex, const LimitMethod& method, const LevelOptions& options, double noise) {
     Levels levels(options.levels + 1);
     for (int k = 0; k <= options.levels; ++k) {
         std::vector<Patch> ring;
         LevelMeasures m;
         for (const LimitSector& s : vertex.sectors) {
             const auto cell = limits.cell(s, k);
-            if (!cell) break;
-            ring.push_back(method.make(*cell));
+            const auto patch = cell && length((*cell)(0, 0).du) > noise ? method.on(*cell) : std::nullopt;
+            if (!patch) break;
+            ring.push_back(*patch);
             grow(m, measure(*cell, ring.back(), options.samples));
         }
         if (ring.size() < vertex.sectors.size()) continue;
@@ -108,7 +109,7 @@ void measure_vertices(const LimitSurface& limit, const LimitFaces& limits, const
     const auto& methods = scheme == Scheme::loop ? triangle_methods() : quad_methods();
     std::vector<std::vector<Levels>> all(vertices.size(), std::vector<Levels>(methods.size()));
     tbb::parallel_for(std::size_t(0), vertices.size(), [&](std::size_t v) {
-        for (std::size_t m = 0; m < methods.size(); ++m) all[v][m] = measure_vertex(limits, vertices[v], methods[m], options);
+        for (std::size_t m = 0; m < methods.size(); ++m) all[v][m] = measure_vertex(limits, vertices[v], methods[m], options, noise);
     });
     std::map<int, std::vector<std::size_t>> by_valence;
     for (std::size_t v = 0; v < vertices.size(); ++v) {
@@ -132,8 +133,10 @@ void measure_vertices(const LimitSurface& limit, const LimitFaces& limits, const
 }
 
 /// Nielson's surface over a whole regular face against the limit, along the edges: positions and derivatives, which it interpolates.
-double edge_gap(const LimitCell& face, int samples) {
-    const LimitFunction surface = limit_function(triangle_methods().back().make(face));
+Measure edge_gap(const LimitCell& face, int samples) {
+    const auto patch = triangle_methods().back().on(face);
+    if (!patch) return {};
+    const LimitFunction surface = limit_function(*patch);
     double gap = 0;
     for (int i = 1; i < samples - 1; ++i) {
         const double t = double(i) / (samples - 1);
@@ -149,7 +152,7 @@ double edge_gap(const LimitCell& face, int samples) {
 /// Regular faces of Loop's scheme: sub-triangles about the centre, where all methods see the same surface, ever nearer to its Taylor polynomial.
 void measure_loop(const LimitSurface& limit, int levels, int samples, double noise, LimitLevels& result) {
     const auto& methods = regular_triangle_methods();
-    std::vector<std::vector<std::vector<double>>> all(limit.faces());  // of each face: by method and level
+    std::vector<std::vector<std::vector<Measure>>> all(limit.faces());  // of each face: by method and level
     std::vector<Measure> gaps(limit.faces());
     tbb::parallel_for(0, limit.faces(), [&](int f) {
         if (limit.kind(f) != LimitFace::regular) return;
@@ -160,10 +163,10 @@ void measure_loop(const LimitSurface& limit, int levels, int samples, double noi
             for (int k = 0; k <= levels; ++k) {
                 const double h = std::ldexp(1.0, -k), low = (1 - h) / 3;
                 const LimitCell cell = face.part({low, low}, {low + h, low}, {low, low + h});
-                const Patch patch = method.make(cell);
+                const auto patch = method.on(cell);
                 Measure worst;
-                sample(Domain::triangle, samples, [&](double s, double t) { grow(worst, distance(patch.point(s, t), cell(s, t).p)); });
-                all[f].back().push_back(*worst);
+                if (patch) sample(Domain::triangle, samples, [&](double s, double t) { grow(worst, distance(patch->point(s, t), cell(s, t).p)); });
+                all[f].back().push_back(worst);
             }
         }
     });
@@ -176,7 +179,7 @@ void measure_loop(const LimitSurface& limit, int levels, int samples, double noi
                     grow(now, face[m][k]);
                     if (k > 0) grow(before, face[m][k - 1]);
                 }
-            if (!now) return;
+            if (!now) continue;
             result.loop.push_back({methods[m].name, methods[m].order, k, *now, before && *now > noise ? Measure(*before / *now) : Measure()});
         }
 }

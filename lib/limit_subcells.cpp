@@ -38,11 +38,12 @@ void compare(const Patch& patch, int level, SubcellReport& report) {
             const double s = i * h, t = j * h;
             const LimitCell cell = whole.part({s, t}, {s + h, t}, {s, t + h});
             if (!cell.complete()) continue;
-            const Patch coons = quad_methods().back().make(cell);
+            const auto coons = quad_methods().back().on(cell);
+            if (!coons) continue;
             ++report.cells;
             for (int a = 0; a < kSamples; ++a)
                 for (int b = 0; b < kSamples; ++b) {
-                    const double x = double(a) / (kSamples - 1), y = double(b) / (kSamples - 1), off = distance(coons.point(x, y), cell(x, y).p);
+                    const double x = double(a) / (kSamples - 1), y = double(b) / (kSamples - 1), off = distance(coons->point(x, y), cell(x, y).p);
                     if (!report.deviation || !(off <= *report.deviation)) report.deviation = off;
                 }
         }

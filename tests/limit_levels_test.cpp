@@ -226,6 +226,23 @@ TEST(LimitLevels, DoesNotDependOnTheNumberOfThreads) {
     EXPECT_EQ(numbers(1), numbers(4));
 }
 
+// What is measured is as small as the cells; rounding is as large as the coordinates.
+TEST(LimitLevels, HoldFarFromTheOriginAndForOnePoint) {
+    for (const Scheme scheme : {Scheme::catmull_clark, Scheme::loop}) {
+        const bool loop = scheme == Scheme::loop;
+        Cage c = star(5, loop, 0.2, 0.1);
+        const LimitLevels near = levels_of(c, scheme, 2);
+        for (Point& p : c.positions) p = p + Point(1e7, -2e7, 1e7);
+        const LimitLevels far = levels_of(c, scheme, 2);
+        ASSERT_EQ(far.by_level.size(), near.by_level.size());
+        for (std::size_t k = 0; k < far.by_level.size(); ++k) EXPECT_NEAR(*far.by_level[k].measured.deviation, *near.by_level[k].measured.deviation, 1e-6);
+        EXPECT_EQ(far.loop.size(), near.loop.size());
+        EXPECT_TRUE(far.identities_hold(200 * eps * 3e7));
+        for (Point& p : c.positions) p = {1, 2, 3};
+        EXPECT_TRUE(levels_of(c, scheme, 2).identities_hold(200 * eps * 4));
+    }
+}
+
 TEST(LimitLevels, AnswersWhereThereIsNothingToMeasure) {
     const LimitLevels torus = levels_of(read_cage_obj(read_text_file(std::string(ISOPARM_SOURCE_DIR) + "/tests/data/cages/torus.obj"), "torus"));
     EXPECT_TRUE(torus.by_level.empty() && torus.refused.empty());

@@ -297,6 +297,7 @@ TEST(LimitCommand, AnswersInJson) {
     const Answer a = limit({cage_path("valence5"), "--json", "-o", folder});
     EXPECT_EQ(a.code, kSuccess);
     EXPECT_EQ(read_text_file(folder + "/limit.json"), a.out);
+    EXPECT_TRUE(std::filesystem::exists(folder + "/limit.png"));
     std::filesystem::remove_all(testing::TempDir() + "isoparm_limit_test");
     const Json j = Json::parse(a.out, "out");
     EXPECT_EQ(j.at("faces", "").number(), 45);

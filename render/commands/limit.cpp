@@ -81,6 +81,7 @@ LimitResult measure(const std::string& path, Scheme scheme, const Options& optio
 int run(const std::vector<std::string>& arguments) {
     const Options options("limit", arguments, {{"--scheme", true}, {"--json", false}, {"-o", true}, {"--samples", true}, {"--levels", true}, {"--scene", true}, {"--surface", true}});
     if (options.has("--scene")) return run_limit_scene(options);
+    if (options.has("--surface")) options.fail("found --surface without --scene, expected the scene that has the surface");
     if (options.words().size() != 1) options.fail("found " + std::to_string(options.words().size()) + " file names, expected one cage, CAGE.obj");
     const std::string word = options.word("--scheme", limit_schemes());
     const auto scheme = static_cast<Scheme>(std::find(limit_schemes().begin(), limit_schemes().end(), word) - limit_schemes().begin());

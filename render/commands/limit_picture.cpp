@@ -26,7 +26,7 @@ Piece piece_of(const std::string& name, const LimitFaces& faces, int n) {
     const bool triangle = patch.domain() == Domain::triangle;
     const auto cell = faces.cell({0, name, 0, 0}, 0);
     std::optional<Patch> composite;
-    if (cell) composite = (triangle ? triangle_methods() : quad_methods()).back().make(*cell);
+    if (cell) composite = (triangle ? triangle_methods() : quad_methods()).back().on(*cell);
     Piece piece;
     std::vector<std::vector<std::uint32_t>> at(n + 1);
     for (int i = 0; i <= n; ++i)
@@ -40,7 +40,7 @@ Piece piece_of(const std::string& name, const LimitFaces& faces, int n) {
         piece.part.triangles.push_back({a, b, c});
         const auto& uv = piece.part.uv;
         const double u = (uv[a].x + uv[b].x + uv[c].x) / 3, v = (uv[a].y + uv[b].y + uv[c].y) / 3;
-        piece.off.push_back(composite ? distance(composite->point(u, v), patch.point(u, v)) : 0);
+        piece.off.push_back(composite ? distance(composite->point(u, v), (*cell)(u, v).p) : 0);
     };
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < (triangle ? n - i : n); ++j) {

@@ -103,8 +103,8 @@ void print_levels(const LimitLevels& levels, std::ostream& out) {
         if (row.valence != valence || row.method != method) {
             valence = row.valence, method = row.method;
             const LimitValence& t = theory(levels, valence);
-            out << "\n  valence " << valence << " (" << t.vertices << (t.vertices == 1 ? " vertex" : " vertices") << "), " << method << "; expected ratios: " << ratio(t.lambda) << " lambda, " << ratio(t.mu)
-                << " mu, " << ratio(t.mu / t.lambda) << " mu/lambda\n  level  deviation   ratio  along normal   ratio  G1 degrees   ratio\n";
+            out << "\n  valence " << valence << " (" << t.vertices << (t.vertices == 1 ? " vertex" : " vertices") << "), " << method
+                << "; expected ratios: " << ratio(t.lambda) << " lambda, " << ratio(t.mu) << " mu, " << ratio(t.mu / t.lambda) << " mu/lambda\n  level  deviation   ratio  along normal   ratio  G1 degrees   ratio\n";
         }
         column(std::to_string(row.level), 5), column(brief(row.measured.deviation), 9), column(ratio(row.ratio_deviation), 6);
         column(brief(row.measured.normal_deviation), 12), column(ratio(row.ratio_normal), 6);
