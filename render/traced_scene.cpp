@@ -137,6 +137,7 @@ private:
         if (known) return *known;
         TessellationOptions options;
         options.tolerance = mesh_tolerance_;
+        options.study = false;
         options.progress = [&](double fraction) { report(fraction, objects); };
         Tessellation t = [&] {
             try {
