@@ -171,6 +171,20 @@ TEST(Paper, ACameraIsPrintedAndShared) {
     EXPECT_EQ(d.code, 0) << d.out << d.err;
 }
 
+TEST(Paper, FiguresOfPanelsHaveLettersThatCanBeRead) {
+    const TemporaryFolder folder;
+    const Outcome r = test::run("figures s004_bbg_lines --format svg --samples 1 --width 84mm --dpi 72 --tolerance 1e-2rel --quiet -o out", folder.path());
+    ASSERT_EQ(r.code, 0) << r.err;
+    const std::string svg = read_all(folder / "out/s004_bbg_lines.svg");
+    expect_well_formed(svg);
+    EXPECT_EQ(attribute(svg, "viewBox=\"0 0 ([0-9]+)"), 238);
+    const std::regex size("<text[^>]*><tspan[^>]*font-size=\"([0-9.]+)\"");
+    int texts = 0;
+    for (std::sregex_iterator m(svg.begin(), svg.end(), size), end; m != end; ++m, ++texts) EXPECT_GE(std::stod((*m)[1]), 5.99) << "points: 72 pixels an inch";
+    EXPECT_GE(texts, 10);
+    EXPECT_EQ(test::run("figures s004_bbg_lines --format doc -o out", folder.path()).code, 64);
+}
+
 // ---- outlines and parameter lines --------------------------------------------------------------------------------------------
 
 Camera from_the_side(const Scene& scene) { return make_camera(scene.camera, drawn_points(scene), scene.image.width, scene.image.height); }
