@@ -17,7 +17,7 @@ using doctor::append;
 using doctor::short_text;
 
 constexpr double kAtAnEnd = 1e-10;   // of the domain: a crossing so near to an end is there
-constexpr double kAtTheSeam = 1e-3;  // the same, of closed curves
+constexpr double kAtTheSeam = 1e-7;  // of a closed curve's size, or as far as the curves miss each other there: a crossing so near to its seam is at the seam
 
 struct Family {
     std::string name;
@@ -45,16 +45,17 @@ std::vector<int> sorted_by(const std::vector<double>& t) {
 }
 
 /// A crossing at the seam of a closed curve is at its begin and at its end: the first of two takes the begin, the second the end; a lone one too takes the
-/// begin. Crossings next to an end are put there.
-void settle_ends(const Family& family, Parameters& at) {
+/// begin. Crossings next to an end of another are put there. `gaps`: as `at`.
+void settle_ends(const Family& family, Parameters& at, const Parameters& gaps) {
     for (std::size_t k = 0; k < at.size(); ++k) {
         const Curve& c = family.curves[k];
-        const double begin = c.begin(), end = c.end(), near = (family.closed(k) ? kAtTheSeam : kAtAnEnd) * (end - begin);
+        const double begin = c.begin(), end = c.end(), near = kAtAnEnd * (end - begin), size = size_of({&c});
+        const bool closed = family.closed(k);
         int at_seam = 0;
-        for (double& t : at[k]) {
-            if (t > begin + near && t < end - near) continue;
-            if (family.closed(k)) t = at_seam++ == 0 ? begin : end;
-            else t = t < begin + near ? begin : end;
+        for (std::size_t l = 0; l < at[k].size(); ++l) {
+            double& t = at[k][l];
+            if (closed && distance(c(t), c(begin)) <= std::max(kAtTheSeam * size, gaps[k][l])) t = at_seam++ == 0 ? begin : end;
+            else if (t <= begin + near || t >= end - near) t = t <= begin + near ? begin : end;
         }
     }
 }
@@ -142,13 +143,14 @@ NetworkFit fit_network(const std::vector<Curve>& u_curves, const std::vector<Cur
     if (u_curves.size() < 2 || v_curves.size() < 2) throw_input("found " + std::to_string(u_curves.size()) + " u_curves and " + std::to_string(v_curves.size()) + " v_curves, expected two of each at least");
     Family u{"u_curves", u_curves, {}, {}}, v{"v_curves", v_curves, {}, {}};
     const std::size_t n = u_curves.size(), m = v_curves.size();
-    Parameters on_u(n, std::vector<double>(m)), on_v(m, std::vector<double>(n));
+    Parameters on_u(n, std::vector<double>(m)), on_v(m, std::vector<double>(n)), gaps_u = on_u, gaps_v = on_v;
     tbb::parallel_for(std::size_t(0), n * m, [&](std::size_t pair) {
         const std::size_t j = pair / m, i = pair % m;
         const Approach x = closest_approach(u.curves[j], v.curves[i]);
         on_u[j][i] = x.s, on_v[i][j] = x.t;
+        gaps_u[j][i] = gaps_v[i][j] = x.distance;
     });
-    settle_ends(u, on_u), settle_ends(v, on_v);
+    settle_ends(u, on_u, gaps_u), settle_ends(v, on_v, gaps_v);
     find_order(u, v, on_u), find_order(v, u, on_v);
     rearrange(u, v, on_u), rearrange(v, u, on_v);
 

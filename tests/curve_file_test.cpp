@@ -216,6 +216,16 @@ TEST(NetworkFit, KeepsCurvesThatCrossAtAGridAndTakesClosedOnes) {
     for (const double u : {0.1, 0.6}) EXPECT_LT(distance(s.point(u, 0.0), fit.network.u_curves[0](u)), 1e-14);
     EXPECT_LT(distance(s.point(0, 0.3), s.point(1, 0.3)), 1e-14) << "closed";
 }
+TEST(NetworkFit, TellsTheSeamFromACrossingNextToIt) {
+    const auto circles = read_brep_curves(kHead + "2\n2 0 0 0 0 0 1 1 0 0 0 1 0 1\n2 0 0 2 0 0 1 1 0 0 0 1 0 1\n", "a.brep");
+    const auto line = [](double angle, double r) { return make_bezier({{r * std::cos(angle), r * std::sin(angle), 0}, {r * std::cos(angle), r * std::sin(angle), 2}}); };
+    // Next to the seam, but not at it; and at the seam, missed by 0.01 there.
+    const NetworkFit beside = fit_network({*circles[0].curve, *circles[1].curve}, {line(0.001, 1), line(2, 1), line(4, 1)});
+    EXPECT_LT(beside.gap, 1e-12);
+    const NetworkFit missed = fit_network({*circles[0].curve, *circles[1].curve}, {line(1e-3, 1.01), line(2, 1), line(-1e-3, 1.01)});
+    EXPECT_NEAR(missed.gap, 0.01, 1e-3);
+    EXPECT_EQ(missed.open, 4u);
+}
 TEST(NetworkFit, RefusesWhatIsNoNetwork) {
     const auto line = [](Point a, Point b) { return make_bezier({a, b}); };
     const auto fails = [](const std::vector<Curve>& u, const std::vector<Curve>& v, const std::string& message) {

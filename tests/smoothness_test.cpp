@@ -87,8 +87,9 @@ TEST(CurvatureMap, ALegendHasItsNumbersAndFitsItsRoom) {
             for (const TextRun& run : t->text) texts += run.text;
             texts += "|";
         }
-        if (const auto* f = std::get_if<Filled>(&item.shape))
+        if (const auto* f = std::get_if<Filled>(&item.shape)) {
             for (const Vec2& p : f->outline) EXPECT_TRUE(p.x > 800 - legend_width(20) && p.x < 800 && p.y > 0 && p.y < 600);
+        }
     }
     for (const char* part : {"|2|", "4|", "\xE2\x88\x92" "4|", "mean curvature", "5"}) EXPECT_NE(texts.find(part), std::string::npos) << part << " in " << texts;
 }
