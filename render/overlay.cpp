@@ -282,15 +282,15 @@ double letter_size(int picture_width, int picture_height, int width, int height)
     return std::min(kLetters * size(picture_width, picture_height), kMostLetters * size(width, height));
 }
 
-Vec2 room_for_text(const std::vector<SceneObject>& objects, double letter) {
+Camera camera_of(const View& view) {
     Vec2 room;
-    for (const SceneObject& o : objects) {
+    for (const SceneObject& o : view.objects) {
         if (o.kind == Kind::axes)
-            room = {std::max(room.x, 2.4 * letter), std::max(room.y, 1.6 * letter)};
+            room = {std::max(room.x, 2.4 * view.letter), std::max(room.y, 1.6 * view.letter)};
         else if (!o.label.text.empty() || !o.net_labels.empty())
-            room = {std::max(room.x, 0.8 * letter), std::max(room.y, 0.5 * letter)};
+            room = {std::max(room.x, 0.8 * view.letter), std::max(room.y, 0.5 * view.letter)};
     }
-    return room;
+    return make_camera(view.camera, view.fitted, view.width - legend_room(view.objects, view.letter, view.width), view.height, room);
 }
 
 }  // namespace isoparm

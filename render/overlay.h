@@ -1,6 +1,7 @@
 // overlay.h -- the vectors over a traced scene: flat lines, axes, labels.
 #pragma once
 #include "drawing.h"
+#include "panels.h"
 #include "sight.h"
 
 namespace isoparm {
@@ -12,7 +13,7 @@ Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, con
 
 /// The size of letters, in pixels, on a part width x height of a picture.
 double letter_size(int picture_width, int picture_height, int width, int height);
-/// Pixels to keep free about what a camera fits, for the labels and axes of the objects.
-Vec2 room_for_text(const std::vector<SceneObject>& objects, double letter);
+/// The camera of a view: what it fits has room for labels and axes around it, and for legends at the right.
+Camera camera_of(const View& view);
 
 }  // namespace isoparm

@@ -9,7 +9,6 @@
 
 #include "camera.h"
 #include "error.h"
-#include "legend.h"
 #include "overlay.h"
 #include "paint.h"
 #include "panels.h"
@@ -258,8 +257,7 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
         if (!progress) return {};
         return [&progress, from, share](double fraction) { progress(from + share * fraction); };
     };
-    const int seen = view.width - legend_room(view.objects, view.letter, view.width);
-    const Camera camera = make_camera(view.camera, view.fitted, seen, view.height, room_for_text(view.objects, view.letter));
+    const Camera camera = camera_of(view);
     Picture picture;
     picture.tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
     auto start = std::chrono::steady_clock::now();

@@ -31,8 +31,7 @@ Camera camera_of(const Scene& scene, const RenderOptions& how) {
     const auto views = views_of(scene, width, height, {}, letter);
     std::size_t k = 0;
     while (k + 1 < views.size() && scene.panels[k].camera) ++k;
-    const View& v = views[k];
-    return make_camera(v.camera, v.fitted, v.width, v.height, room_for_text(v.objects, v.letter));
+    return camera_of(views[k]);
 }
 
 int run(const std::vector<std::string>& arguments) {
