@@ -28,15 +28,15 @@ protected:
     const test::TemporaryFolder t;
 };
 
-TEST_F(Reproducible, ImagesParallel) {
+TEST_F(Reproducible, Images) {
     for (const char* name : {"p.png", "p.exr"}) expect_same("render " + scene("coons") + " --size 40x30 --samples 4 --quiet -o " + name, name);
     expect_same("render " + scene("coons") + " --size 40x30 --samples 4 --aov N,Z,patch --quiet -o a.exr", "a.exr");
 }
-TEST_F(Reproducible, MeshesParallel) {
+TEST_F(Reproducible, Meshes) {
     for (const char* name : {"m.ply", "m.obj", "m.stl", "m.glb"}) expect_same("tessellate " + scene("teapot") + " --tolerance 1e-2rel --quiet -o " + name, name);
     expect_same("tessellate " + scene("coons") + " --tolerance 1e-2 --quiet -o m.ply --certificate c.json", "c.json");
 }
-TEST_F(Reproducible, AnswersParallel) {
+TEST_F(Reproducible, Answers) {
     expect_same("info " + scene("coons"), "");
     expect_same("eval " + scene("coons") + " --surface S --at 0.3,0.7 --json", "");
     expect_same("check " + scene("s003_coons_network") + " --json", "");

@@ -74,8 +74,8 @@ void check(const Patch& patch) {
     }
     TessellationOptions options;
     options.measure = Measure::parametric;
-    options.tolerance = 0.05 * bounding_box({{"s", patch}}).diagonal();
-    options.max_triangles = 300;
+    options.tolerance = 0.1 * bounding_box({{"s", patch}}).diagonal();
+    options.max_triangles = 100;
     if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) return;
     const Tessellation t = tessellate({{"s", patch}}, options);
     for (const Point& p : t.mesh.positions)
