@@ -3,12 +3,11 @@
 #include <algorithm>
 
 #include "bound.h"
+#include "scalar/safe.h"
 
 namespace isoparm {
 namespace {
 
-/// Sums and products of numbers >= 0, a few dozen operations long, are at most this factor too small, up to underflow.
-constexpr double kSafe = 1 + 1e-13, kUnderflow = 1e-290;
 /// The largest value of s (1 - s) |2 s - 1| on [0,1], sqrt(3)/18, rounded up.
 constexpr double kOdd = 0.0963;
 

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scalar/safe.h"
+
 namespace isoparm {
 namespace {
-
-/// Sums and products of numbers >= 0, a few dozen operations long, are at most this factor too small, up to underflow.
-constexpr double kSafe = 1 + 1e-13, kUnderflow = 1e-290;
-double safe(double x) { return x * kSafe + kUnderflow; }
 
 Point middle(const Vec3<Interval>& x) { return {mid(x.x), mid(x.y), mid(x.z)}; }
 double radius(const Vec3<Interval>& x) { return rounding::length_up(rad(x.x), rad(x.y), rad(x.z)); }
@@ -77,7 +75,7 @@ void SecondDerivatives::add_sizes(double ru, double rv) {
     for (int k = 0; k < 4; ++k) t_size[k] = safe(size_of(t[k]) + t_rad[k]);
     for (int k = 0; k < 3; ++k) h_size[k] = safe(size_of(h[k]) + t_size[k] * ru + t_size[k + 1] * rv);
     const double all = h_size[0] + h_size[1] + h_size[2] + t_size[0] + t_size[1] + t_size[2] + t_size[3] + h_rad[0] + h_rad[1] + h_rad[2];
-    bounded = all < 1e290;
+    bounded = all < kLargestDerivative && in_scale(ru) && in_scale(rv);
 }
 
 PolynomialCell::PolynomialCell(const Patch& patch, const Box& box) {
@@ -94,6 +92,7 @@ PolynomialCell::PolynomialCell(const Patch& patch, const Box& box) {
     if (p_ > max_degree || q_ > max_degree) return;
     const Interval u(us[i], us[i + 1]), v(vs[j], vs[j + 1]);
     u_ = mid(u), v_ = mid(v);
+    if (!in_scale(rad(u)) || !in_scale(rad(v))) return;
     c_.assign(std::size_t((p_ + 1) * (q_ + 1)), Lanes{});
     for (int axis = 0; axis < 3; ++axis)
         for (int s = 0; s <= form[axis].degree_u(); ++s)

@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "bound_cell.h"
+#include "scalar/safe.h"
 
 namespace isoparm {
 namespace {
 
-/// Sums and products of numbers >= 0, a few dozen operations long, are at most this factor too small, up to underflow.
-constexpr double kSafe = 1 + 1e-13, kUnderflow = 1e-290;
-double safe(double x) { return x * kSafe + kUnderflow; }
 /// Times the sum of the absolute terms: at least the rounding error of H(m)[e,e] and of its products with unit vectors.
 constexpr double kRounding = 64 * 0x1p-53;
 

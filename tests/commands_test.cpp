@@ -169,6 +169,8 @@ TEST(Commands, RoundingToFloatIsPartOfTheCertifiedErrorOfStl) {
     const Json::Value ply = report("m.ply"), stl = report("m.stl");
     EXPECT_EQ(ply["format_rounding"].asDouble(), 0);
     EXPECT_GT(stl["format_rounding"].asDouble(), 1e-8);
+    EXPECT_TRUE(ply["normal_deviation"].isNumeric());
+    EXPECT_TRUE(stl["normal_deviation"].isNull()) << "the triangles in the file are not those whose normals were bounded";
     EXPECT_LT(stl["format_rounding"].asDouble(), 0x1p-24 * 1.8);
     EXPECT_LE(stl["certified_error"].asDouble(), 1e-3);
     EXPECT_EQ(stl["tolerance"].asDouble(), 1e-3);

@@ -50,7 +50,7 @@ that patches share are found and share their vertices.
                   half of them on convex surfaces, for some ten times the time; proved as certificates are
 --max-triangles N the budget, 20000000; beyond it the command ends with exit code 2 and says what was reached
 --report FILE     JSON: triangles, vertices, tolerance, measure, quality, vertices_on, certified_error, sampled_error, boundary_loops,
-                  t_junctions, non_manifold_edges, normal_deviation (degrees; of all triangles but normals_unproved; null with free), seconds,
+                  t_junctions, non_manifold_edges, normal_deviation (degrees; of all triangles but normals_unproved; null with free, and where float32 moves points), seconds,
                   surfaces (with the asymptotic optimum of triangles),
                   format_rounding (how far float32 moves points in .stl and .glb; part of certified_error); - is standard output
 --certificate F   a JSON file that lets isoparm verify --certificate prove the error again: parameters, bound and method of every triangle;
@@ -176,7 +176,7 @@ void write_report(std::ostream& out, const Tessellation& t, const Selection& sel
     out << "{\"triangles\": " << t.mesh.triangle_count() << ", \"vertices\": " << t.mesh.positions.size() << ",\n \"tolerance\": " << json_text(t.tolerance)
         << ", \"measure\": " << json_text(measure) << ", \"quality\": " << json_text(quality) << ", \"vertices_on\": " << (free ? "\"free\"" : "\"surface\"") << ", \"certified_error\": " << json_text(t.certified_error) << ", \"sampled_error\": " << json_text(t.sampled_error)
         << ", \"format_rounding\": " << json_text(format_rounding)
-        << ",\n \"normal_deviation\": " << (measure == "geometric" && !free ? json_text(t.normal_deviation) : "null") << ", \"normals_unproved\": " << t.normals_unproved
+        << ",\n \"normal_deviation\": " << (measure == "geometric" && !free && format_rounding == 0 ? json_text(t.normal_deviation) : "null") << ", \"normals_unproved\": " << t.normals_unproved
         << ",\n \"boundary_loops\": " << t.topology.boundary_loops << ", \"boundary_edges\": " << t.topology.boundary_edges << ", \"t_junctions\": " << t.topology.t_junctions
         << ", \"non_manifold_edges\": " << t.topology.non_manifold_edges << ", \"degenerate_triangles\": " << t.topology.degenerate_triangles
         << ",\n \"seconds\": {\"tessellate\": " << json_text(t.seconds_tessellate) << ", \"sample\": " << json_text(t.seconds_sample) << ", \"write\": " << json_text(seconds_write)
