@@ -8,7 +8,6 @@
 #include "patches/transformed.h"
 #include "promises.h"
 #include "registry.h"
-#include "scene_include.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -80,7 +79,7 @@ BuiltSurface build_transformed_surface(const Json& j, SceneBuilder& scene) {
 BuiltSurface build_file(const Json& j, SceneBuilder& scene) {
     const Json path = j.at("path", "the name of a .bv file, relative to the scene");
     if (extension_of(scene.values().text(path, "the name of a .bv file, relative to the scene")) != ".bv") path.expected("a file that ends in .bv (other formats are not read)");
-    const IncludedFile file = read_included(path, scene.values(), "a BV file");
+    const IncludedFile file = scene.included(path, "a BV file");
     return BuiltSurface(read_bv(file.text, file.path));
 }
 

@@ -5,7 +5,6 @@
 
 #include "io/cage_obj.h"
 #include "registry.h"
-#include "scene_include.h"
 #include "subdivision.h"
 #include "suggest.h"
 
@@ -16,9 +15,9 @@ constexpr double kInfinitelySharp = 10;
 constexpr double kLargest = 1e100;  // as in files: squares and products of lengths stay finite
 constexpr std::size_t kMostCorners = 500;  // of a face, as make_subdivision() has it
 
-Cage read_cage(const Json& j, const SceneValues& values) {
-    values.text(j, "the name of an .obj file, relative to the scene, or a cage");
-    const IncludedFile file = read_included(j, values, "an OBJ cage");
+Cage read_cage(const Json& j, SceneBuilder& scene) {
+    scene.values().text(j, "the name of an .obj file, relative to the scene, or a cage");
+    const IncludedFile file = scene.included(j, "an OBJ cage");
     try {
         return read_cage_obj(file.text, file.path);
     } catch (const Error& e) {
@@ -87,7 +86,7 @@ BuiltSurface build_subdivision(const Json& j, SceneBuilder& scene) {
             if (const auto extra = j.find(key)) extra->fail_at_key("found " + quoted(key) + " beside a cage in a file, expected one or the other");
     if (file && file->is(Json::Kind::object)) file->allow_keys(inline_keys);
     if (!file && !j.find("vertices")) j.at("cage", "the cage, an .obj file or {\"vertices\", \"faces\", \"creases\", \"corners\"}, or these keys here");
-    Cage cage = !file ? inline_cage(j, scene.values()) : file->is(Json::Kind::object) ? inline_cage(*file, scene.values()) : read_cage(*file, scene.values());
+    Cage cage = !file ? inline_cage(j, scene.values()) : file->is(Json::Kind::object) ? inline_cage(*file, scene.values()) : read_cage(*file, scene);
     const auto scheme_key = j.find("scheme");
     const auto scheme = scheme_key ? static_cast<Scheme>(scene.values().word(*scheme_key, {"catmull-clark", "loop", "bilinear"})) : Scheme::catmull_clark;
     if (const auto boundary = j.find("boundary"))

@@ -176,6 +176,7 @@ struct Scene {
     std::optional<LightingSettings> lighting;  // none: the figures' own
     Tolerance tolerance;
     std::vector<std::string> notes;  // what was done to definitions, each with its place
+    std::vector<std::string> included;  // paths of the files that it names and that were read
 
     /// nullptr when there is none of that name.
     const Surface* find_surface(const std::string& name) const;

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "registry.h"
-#include "scene_include.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -133,8 +132,14 @@ const std::vector<FileCurve>& SceneBuilder::curves_of_file(const Json& definitio
     const Json path = definition.at("path", expected_curve_file);
     const std::string& name = values_.text(path, std::string(expected_curve_file) + ", relative to the scene");
     if (const auto done = curve_files_.find(name); done != curve_files_.end()) return done->second;
-    const IncludedFile file = read_included(path, values_, expected_curve_file);
+    const IncludedFile file = included(path, expected_curve_file);
     return curve_files_.emplace(name, read_curve_file(file.text, file.path)).first->second;
+}
+
+IncludedFile SceneBuilder::included(const Json& name, const std::string& what) {
+    IncludedFile file = read_included(name, values_, what);
+    included_.insert(file.path);
+    return file;
 }
 
 std::vector<Curve> SceneBuilder::curves(const Json& list, std::size_t least, std::size_t most) {

@@ -10,6 +10,7 @@
 #include "json.h"
 #include "patches/control_net.h"
 #include "scene.h"
+#include "scene_include.h"
 #include "scene_values.h"
 
 namespace isoparm {
@@ -51,6 +52,11 @@ public:
     /// Of the file that the key "path" of a definition names; read once.
     const std::vector<FileCurve>& curves_of_file(const Json& definition);
 
+    /// The file that `name` names, as read_included() reads it.
+    IncludedFile included(const Json& name, const std::string& what);
+    /// Paths of all of them.
+    const std::set<std::string>& included_paths() const { return included_; }
+
     std::vector<std::string> curve_names() const;
     std::vector<std::string> surface_names() const;
     /// Surfaces that another one was made of.
@@ -73,7 +79,7 @@ private:
     std::map<std::string, BuiltSurface> built_surfaces_;
     std::map<std::string, std::vector<FileCurve>> curve_files_;  // by path
     std::vector<std::string> in_progress_;
-    std::set<std::string> used_;
+    std::set<std::string> used_, included_;
     std::vector<std::string> notes_;
 };
 

@@ -232,6 +232,7 @@ Scene read_scene(const Json& root, const std::map<std::string, double>& override
     }
     scene.notes = builder.notes();
     read_panels(root, builder, scene);
+    scene.included.assign(builder.included_paths().begin(), builder.included_paths().end());
     if (scene.objects.empty()) scene.objects = default_objects(scene, builder.used_surfaces());
     scene.image.background = Color{1, 1, 1};
     if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera, values);

@@ -148,6 +148,36 @@ TEST(Commands, AnOutputNeverReplacesTheSceneOrAnotherOutput) {
     EXPECT_EQ(t.files(), 3u);
     EXPECT_EQ(read_all(t / "self.ply"), text);
 }
+/// -o DIR, files that the scene includes, images of the folders compared.
+TEST(Commands, AnOutputNeverReplacesWhatIsReadBesides) {
+    namespace fs = std::filesystem;
+    const TemporaryFolder t;
+    const std::string cage = read_all(source_folder() + "/tests/data/cages/cube.obj");
+    const std::string included = R"({"isoparm": 1, "surfaces": {"S": {"type": "subdivision", "cage": "v12.obj"}}})";
+    for (const char* name : {"limit.json", "v12.obj", "v12.png", "limit.png"}) write_all(t / name, cage);
+    write_all(t / "s.json", included);
+    for (const char* folder : {"spline", "net", "ref", "new"}) fs::create_directory(t / folder);
+    for (const char* name : {"spline/limit.json", "net/cage-0.obj"}) fs::copy_file(source_folder() + "/scenes/coons.json", t / name);
+    for (const char* name : {"ref/b.png", "ref/c.gif", "new/a.png", "new/b.png"}) write_all(t / name, "image");
+    const auto refused = [&](const std::string& arguments, const std::string& file) {
+        const std::string before = read_all(t / file);
+        const Outcome o = run(arguments, t.path());
+        EXPECT_EQ(o.code, 64) << arguments << o.err;
+        EXPECT_NE(o.err.find(", expected another one"), std::string::npos) << arguments << o.err;
+        EXPECT_EQ(read_all(t / file), before) << arguments;
+    };
+    refused("limit limit.json -o .", "limit.json");
+    refused("limit limit.png -o .", "limit.png");
+    refused("limit --scene spline/limit.json --surface S -o spline", "spline/limit.json");
+    refused("limit --scene net/cage-0.obj --surface S -o net", "net/cage-0.obj");
+    refused("tessellate s.json --tolerance 0.1 -o v12.obj", "v12.obj");
+    refused("tessellate s.json --tolerance 0.1 -o v12.ply --report v12.obj", "v12.obj");
+    write_all(t / "s.json", included.substr(0, included.find(".obj")) + ".png" + included.substr(included.find(".obj") + 4));
+    refused("render s.json --size 8x8 -o v12.png", "v12.png");
+    for (const std::string image : {"ref/b.png", "new/a.png", "new/b.png", "ref/c.gif", "ref/a.png"})
+        for (const char* report : {"--html ", "--junit "}) refused("diff ref new " + (report + image), image);
+    EXPECT_FALSE(fs::exists(t / "ref/a.png"));
+}
 TEST(Commands, FoldersAreCheckedBeforeTheWork) {
     const TemporaryFolder t;
     const std::string hopeless = "tessellate " + scene("coons") + " --tolerance 1e-9 --max-triangles 10";

@@ -90,6 +90,22 @@ TEST_F(Faults, OfCallsInMeshes) {
         expect_survives("tessellate in/coons.json --tolerance 0.1 -o out/" + name, {{name, "old"}}, 20);
     }
 }
+/// As of a run in another container or on another host, which draws the same name.
+TEST_F(Faults, OfRandomNamesLeaveOthersFiles) {
+    const std::string mesh = "tessellate in/coons.json --tolerance 0.1 -o out/m.ply", faults = "env LD_PRELOAD=" ISOPARM_FAULTS " ISOPARM_FAULT_AT=1 ISOPARM_FAULT_LOG=log ISOPARM_FAULT=random ";
+    isoparm(mesh);
+    Files whole = files(), old{{"m.ply", "old"}};
+    whole["isoparm.tmp-0000000000000000"] = old["isoparm.tmp-0000000000000000"] = "of another run";
+    restore(old);
+    const Outcome always = isoparm(mesh, faults);
+    EXPECT_EQ(always.code, 4) << always.err;
+    EXPECT_NE(always.err.find("File exists"), std::string::npos) << always.err;
+    EXPECT_EQ(files(), old);
+    EXPECT_TRUE(fs::exists(t / "log"));
+    const Outcome once = isoparm(mesh, faults + "ISOPARM_FAULT_ONCE=1 ");
+    EXPECT_EQ(once.code, 0) << once.err;
+    EXPECT_EQ(files(), whole);
+}
 TEST_F(Faults, OfCallsInCertificates) { expect_survives("tessellate in/coons.json --tolerance 0.1 -o out/m.ply --certificate out/c.json", {{"m.ply", "old"}, {"c.json", "old"}}, 20); }
 TEST_F(Faults, OfCallsInReports) { expect_survives("limit in/plane.obj -o out", {{"limit.json", "old"}}, 20); }
 TEST_F(Faults, OfCallsInPng) { expect_survives("render in/coons.json --size 16x16 --samples 1 -o out/p.png", {{"p.png", "old"}}, 1); }

@@ -1,6 +1,7 @@
 #include "io/mesh_files.h"
 
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 
 #include <bit>
@@ -130,6 +131,67 @@ TEST(AtomicFile, KeepsPermissionsAndLinks) {
     struct stat s {};
     ::stat((t / "a").c_str(), &s);
     EXPECT_EQ(s.st_mode & 0777, 0640u);
+}
+TEST(AtomicFile, DropsSetuid) {
+    const TemporaryFolder t;
+    write_all(t / "a", "old");
+    ASSERT_EQ(::chmod((t / "a").c_str(), 06755), 0);
+    write_atomically(t / "a", [](std::ostream& out) { out << "new"; });
+    struct stat s {};
+    ::stat((t / "a").c_str(), &s);
+    EXPECT_EQ(s.st_mode & 07777, 0755u);
+}
+/// Of a plain user: root may open what the umask forbids.
+TEST(AtomicFile, IsWrittenUnderAnyUmask) {
+    const TemporaryFolder t;
+    ::chmod(t.path().c_str(), 0777);
+    for (const mode_t mask : {0222u, 0777u, 0027u}) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            if (::geteuid() == 0 && (::setgid(65534) != 0 || ::setuid(65534) != 0)) ::_exit(2);
+            ::prctl(PR_SET_DUMPABLE, 1);  // its /proc/self/fd is its own again
+            ::umask(mask);
+            try {
+                write_atomically(t / "a", [](std::ostream& out) { out << "new"; });
+            } catch (const Error&) {
+                ::_exit(1);
+            }
+            ::_exit(0);
+        }
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        EXPECT_EQ(status, 0) << std::oct << mask;
+        struct stat s {};
+        ASSERT_EQ(::stat((t / "a").c_str(), &s), 0) << std::oct << mask;
+        EXPECT_EQ(s.st_mode & 07777, 0666u & ~mask) << std::oct << mask;
+        ::unlink((t / "a").c_str());
+    }
+}
+TEST(AtomicFile, FollowsLinksToWhatIsNotThereYet) {
+    namespace fs = std::filesystem;
+    const TemporaryFolder t;
+    const auto text = [](std::ostream& out) { out << "new"; };
+    fs::create_directory(t / "there");
+    fs::create_symlink("there/b", t / "a");
+    fs::create_symlink("../there/c", t / "there/b");
+    write_atomically(t / "a", text);
+    EXPECT_TRUE(fs::is_symlink(t / "a") && fs::is_symlink(t / "there/b"));
+    EXPECT_EQ(read_all(t / "there/c"), "new");
+    fs::create_symlink("y", t / "x");
+    fs::create_symlink("x", t / "y");
+    EXPECT_EQ(kind_of([&] { write_atomically(t / "x", text); }, "Too many levels of symbolic links"), ErrorKind::io);
+    for (int k = 0; k < 50; ++k) fs::create_symlink("l" + std::to_string(k + 1), t / ("l" + std::to_string(k)));
+    EXPECT_EQ(kind_of([&] { write_atomically(t / "l0", text); }, "Too many levels of symbolic links"), ErrorKind::io);
+    fs::create_symlink("no/such", t / "z");
+    EXPECT_EQ(kind_of([&] { write_atomically(t / "z", text); }, "No such file or directory"), ErrorKind::io);
+    EXPECT_EQ(t.files(), 55u);  // a, there, x, y, 50, z
+}
+TEST(AtomicFile, NamesMayBeAsLongAsTheFileSystemTakes) {
+    const TemporaryFolder t;
+    const std::string name(255, 'n');
+    for (const char* text : {"old", "new"}) write_atomically(t / name, [&](std::ostream& out) { out << text; });
+    EXPECT_EQ(read_all(t / name), "new");
+    EXPECT_EQ(t.files(), 1u);
 }
 TEST(AtomicFile, SaysWhyItCannotWrite) {
     const TemporaryFolder t;

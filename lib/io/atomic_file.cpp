@@ -1,12 +1,15 @@
 #include "io/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -71,8 +74,15 @@ void restore_handlers() {
 
 class RemovedOnSignal {
 public:
-    explicit RemovedOnSignal(const std::string& name) {
-        install_handlers();
+    RemovedOnSignal() { install_handlers(); }
+    ~RemovedOnSignal() {
+        disarm();
+        restore_handlers();
+    }
+    RemovedOnSignal(const RemovedOnSignal&) = delete;
+    RemovedOnSignal& operator=(const RemovedOnSignal&) = delete;
+    /// From here on a signal removes `name`, which this process made.
+    void arm(const std::string& name) {
         if (name.size() >= kNameLength) return;
         for (Slot& s : slots) {
             if (s.used.exchange(true)) continue;
@@ -83,15 +93,12 @@ public:
             return;
         }
     }
-    ~RemovedOnSignal() {
-        if (slot_) {
-            slot_->ready = false;
-            slot_->used = false;
-        }
-        restore_handlers();
+    void disarm() {
+        if (!slot_) return;
+        slot_->ready = false;
+        slot_->used = false;
+        slot_ = nullptr;
     }
-    RemovedOnSignal(const RemovedOnSignal&) = delete;
-    RemovedOnSignal& operator=(const RemovedOnSignal&) = delete;
 
 private:
     Slot* slot_ = nullptr;
@@ -99,24 +106,40 @@ private:
 
 // ---- the temporary --------------------------------------------------------------------------------------------------
 
-/// Created empty, with the permissions of the file that it will replace. It has no name until it is whole, so that not even SIGKILL
-/// leaves it; on file systems that know no files without names (O_TMPFILE) it has one from the start, and is removed unless it was renamed.
+std::string random_word() {
+    unsigned char bytes[8];
+    if (::getrandom(bytes, sizeof bytes, 0) != sizeof bytes) {  // a kernel without it; the name is taken only where it is free
+        static std::atomic<std::uint64_t> count{0};
+        const std::uint64_t other = static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count()) * 0x9e3779b97f4a7c15u + ((count++ << 32) ^ static_cast<std::uint64_t>(::getpid()));
+        std::memcpy(bytes, &other, sizeof bytes);
+    }
+    std::string word;
+    for (const unsigned char b : bytes) word += "0123456789abcdef"[b >> 4], word += "0123456789abcdef"[b & 15];
+    return word;
+}
+
+/// Created empty. It has no name until it is whole, so that not even SIGKILL leaves it; on file systems that know no files without names
+/// (O_TMPFILE) it has one from the start. Only a name that this process made is removed: it is random, as process numbers are the same in
+/// other containers and on other hosts, and short, whatever the length of the file's own.
 class Temporary {
 public:
-    explicit Temporary(const std::string& path) : path_(path), name_(unused_name(path)), guard_(name_) {
-        file_ = ::open(folder().c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    explicit Temporary(const std::string& path) : path_(path) {
+        struct stat old {};
+        const bool replaces = ::stat(path.c_str(), &old) == 0;
+        const mode_t first = replaces ? 0600 : 0666;  // who may not read the old file shall not open the new one while it is empty
+        file_ = ::open(folder().c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, first);
+        open_to_me();
         unnamed_ = file_ >= 0 && ::access(descriptor().c_str(), W_OK) == 0;  // is /proc there?
         if (!unnamed_) {
             if (file_ >= 0) ::close(file_);
-            file_ = ::open(name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+            if (!with_free_name([&](const char* name) { return (file_ = ::open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, first)) >= 0; })) fail(path, "cannot create a file in its folder", errno);
+            open_to_me();
         }
-        if (file_ < 0) fail(path, "cannot create a file in its folder", errno);
-        struct stat old {};
-        if (::stat(path.c_str(), &old) == 0 && ::fchmod(file_, old.st_mode & 07777) != 0) { /* another's file: keeps the usual permissions */ }
+        if (replaces) mode_ = old.st_mode & 0777;  // not setuid and setgid, which were given to another text
     }
     ~Temporary() {
         ::close(file_);
-        if (!renamed_) ::unlink(name_.c_str());
+        if (named_) ::unlink(name_.c_str());
     }
     Temporary(const Temporary&) = delete;
     Temporary& operator=(const Temporary&) = delete;
@@ -124,11 +147,13 @@ public:
     std::string name() const { return unnamed_ ? descriptor() : name_; }
 
     void sync_and_rename() {
+        if (::fchmod(file_, mode_) != 0) { /* a file system without permissions */ }
         const int error = ::fsync(file_) == 0 ? 0 : errno;
         if (error != 0 && error != EINVAL && error != ENOTSUP) fail(path_, "writing failed", error);
-        if (unnamed_ && ::linkat(AT_FDCWD, descriptor().c_str(), AT_FDCWD, name_.c_str(), AT_SYMLINK_FOLLOW) != 0) fail(path_, "cannot be made in its folder", errno);
+        if (unnamed_ && !with_free_name([&](const char* name) { return ::linkat(AT_FDCWD, descriptor().c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0; })) fail(path_, "cannot be made in its folder", errno);
         if (::rename(name_.c_str(), path_.c_str()) != 0) fail(path_, "cannot be replaced", errno);
-        renamed_ = true;
+        named_ = false;
+        guard_.disarm();
         const int directory = ::open(folder().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (directory < 0) return;  // a folder that may be written but not read: the rename itself has succeeded
         const int failed = ::fsync(directory) == 0 ? 0 : errno;
@@ -139,17 +164,26 @@ public:
 private:
     std::string folder() const { return fs::path(path_).has_parent_path() ? fs::path(path_).parent_path().string() : "."; }
     std::string descriptor() const { return "/proc/self/fd/" + std::to_string(file_); }
-    static std::string unused_name(const std::string& path) {
-        static std::atomic<unsigned> count{0};
-        for (;;) {
-            const std::string name = path + ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
-            struct stat found {};
-            if (::lstat(name.c_str(), &found) != 0) return name;
+    /// It is opened a second time, by name, which the umask may forbid; the permissions that the umask leaves are given at the end.
+    void open_to_me() {
+        struct stat made {};
+        if (file_ < 0 || ::fstat(file_, &made) != 0) return;
+        mode_ = made.st_mode & 0777;
+        if (::fchmod(file_, 0600) != 0) { /* a file system without permissions */ }
+    }
+    /// `make` makes a file of that name unless there is one. False: errno says why not.
+    bool with_free_name(const std::function<bool(const char*)>& make) {
+        for (int tries = 0; tries < 100; ++tries) {
+            name_ = (fs::path(folder()) / ("isoparm.tmp-" + random_word())).string();
+            if ((named_ = make(name_.c_str()))) return guard_.arm(name_), true;
+            if (errno != EEXIST) return false;
         }
+        return false;
     }
     std::string path_, name_;
     int file_ = -1;
-    bool unnamed_ = false, renamed_ = false;
+    mode_t mode_ = 0600;
+    bool unnamed_ = false, named_ = false;  // named_: there is a file name_, and it is ours
     RemovedOnSignal guard_;
 };
 
@@ -167,14 +201,14 @@ void write_stream(const std::string& path, const std::string& name, const std::f
     if (!out) fail(path, "writing failed", errno ? errno : EIO);
 }
 
-/// Where the file really lies: a link is followed, so that it stays a link. Throws for a directory.
+/// A link is followed, so that it stays a link. Throws for a directory.
 std::string target_of(const std::string& path) {
     if (path.empty()) throw Error(ErrorKind::io, "the name of the file to write is empty");
     std::error_code code;
     if (fs::is_directory(path, code)) fail(path, "cannot be written", EISDIR);
-    if (!fs::is_symlink(path, code)) return path;
-    const fs::path real = fs::weakly_canonical(path, code);
-    return code ? path : real.string();
+    const std::string target = behind_links(path);
+    if (target.empty()) fail(path, "cannot be written", errno);
+    return target;
 }
 /// Devices and pipes (/dev/stdout) are written as they are.
 bool is_device(const std::string& path) {
@@ -187,6 +221,20 @@ bool is_device(const std::string& path) {
 void remove_temporaries() {
     for (Slot& s : slots)
         if (s.ready.load() && s.owner == ::getpid()) ::unlink(s.name);
+}
+
+std::string behind_links(const std::string& path) {
+    constexpr int kMost = 40;  // as the kernel
+    struct stat found {};
+    if (::stat(path.c_str(), &found) != 0 && errno != ENOENT) return "";  // the kernel's own judgement of loops, and of links that others laid
+    fs::path at = path;
+    std::error_code code;
+    for (int k = 0; fs::is_symlink(at, code); ++k) {
+        const fs::path link = fs::read_symlink(at, code);
+        if (code || k == kMost) return errno = code ? code.value() : ELOOP, "";
+        at = at.parent_path() / link;  // link alone where it is absolute
+    }
+    return at.string();
 }
 
 void write_atomically(const std::string& path, const std::function<void(std::ostream&)>& write) {

@@ -208,11 +208,10 @@ void update(ImageDiff& d, const std::string& reference, const std::string& image
     d.verdict = DiffVerdict::pass;
 }
 
-std::vector<ImageDiff> compare_folders(const std::string& references, const std::string& images, DiffRequest request, const Options& options) {
+std::vector<ImageDiff> compare_folders(const FolderPairs& found, const std::string& references, const std::string& images, DiffRequest request, const Options& options) {
     std::vector<ImageDiff> all;
     int pictures = 0;
     const int preview = request.preview;
-    const FolderPairs found = pair_folders(references, images);
     if (!found.unread.empty() && !options.quiet() && !options.has("-q"))
         std::fprintf(stderr, "isoparm: note: %zu images are of formats that are not read, and were not compared: %s%s\n", found.unread.size(), printable(found.unread.front()).c_str(), found.unread.size() > 1 ? ", ..." : "");
     for (const FolderPair& pair : found.pairs) {
@@ -244,8 +243,14 @@ int selftest(const Options& options) {
     return missed ? kCheckFailed : kSuccess;
 }
 
-void check_files(const Options& options, const DiffRequest& request, const std::string& a, const std::string& b, bool folders) {
+/// `found`: of two folders. No report replaces an image of theirs, nor one that --update makes.
+void check_files(const Options& options, const DiffRequest& request, const std::string& a, const std::string& b, bool folders, const FolderPairs& found) {
     std::vector<NamedFile> outputs, inputs{{"REF", a}, {"NEW", b}};
+    for (const FolderPair& pair : found.pairs) {
+        inputs.push_back({"REF", (fs::path(a) / pair.name).string()}), inputs.push_back({"NEW", (fs::path(b) / pair.name).string()});
+        for (const std::string& reference : pair.references) inputs.push_back({"REF", reference});
+    }
+    for (const std::string& image : found.unread) inputs.push_back({"REF or NEW", image});
     if (!request.mask.empty()) inputs.push_back({"--mask", request.mask});
     if (!request.output.empty()) {
         if (folders) options.fail("-o is for two images, and these are folders");
@@ -295,14 +300,15 @@ int run(const std::vector<std::string>& arguments) {
     const std::string missing = !fs::exists(a, ignored) && !made ? a : !fs::exists(b, ignored) ? b : "";
     if (missing.empty() && folders != fs::is_directory(b, ignored)) options.fail("found a folder and a file, expected two images or two folders");
     const DiffRequest request = read_request(options);
-    check_files(options, request, a, b, folders);
+    const FolderPairs found = folders && missing.empty() ? pair_folders(a, b) : FolderPairs{};
+    check_files(options, request, a, b, folders, found);
     if (options.has("--update") && !folders && missing.empty()) check_format(options, a, b);
 
     std::vector<ImageDiff> all;
     if (!missing.empty()) {
         all.push_back(problem(a, b, DiffVerdict::unreadable, missing + ": there is no such file or folder"));
         tell(all.front(), request, options);
-    } else if (folders) all = compare_folders(a, b, request, options);
+    } else if (folders) all = compare_folders(found, a, b, request, options);
     else {
         all.push_back(compare_files(a, b, request));
         make_figures(all.front());

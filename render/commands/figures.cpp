@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "commands/guard.h"
+#include "commands/output.h"
 #include "commands/render_options.h"
 #include "contact_sheet.h"
 #include "error.h"
@@ -95,6 +96,7 @@ int run(const std::vector<std::string>& arguments) {
             if (!options.quiet()) print_notes(scene);
             finite_diagonal(scene, bounding_box(scene));
             const std::string path = (folder / (name + "." + format)).string();
+            check_outputs(options, {{"-o", path}}, inputs_of(scene));
             const Picture picture = [&] {
                 ProgressBar bar(name, options.quiet());
                 RenderOptions with_bar = rendering_of(how, path);

@@ -11,6 +11,7 @@
 #include "drawn.h"
 #include "error.h"
 #include "image.h"
+#include "paper.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -77,13 +78,17 @@ std::vector<Frame> frames_of(const Options& options, const std::string& pattern)
         for (std::size_t i = 0; i + 1 < ranges.size(); ++i)
             if (ranges[i].name == ranges.back().name) options.fail("--animate " + ranges.back().name + " is given twice, expected every parameter once");
     }
+    std::vector<NamedFile> inputs = inputs_of(scene);
+    if (const auto camera = options.value("--camera")) inputs.push_back({"--camera", *camera});
     std::vector<Frame> frames;
     for (int k = 0; k < *count; ++k) {
         Frame& f = frames.emplace_back(Frame{path_of(options, pattern, k), {}});
         const double t = static_cast<double>(k) / (*count - 1);
         for (const Range& r : ranges) f.parameters[r.name] = std::clamp((1 - t) * r.from + t * r.to, std::min(r.from, r.to), std::max(r.from, r.to));
         check_picture_path(options, f.path);
-        check_outputs(options, {{"-o", f.path}}, {{"SCENE", options.scene_path()}});
+        std::vector<NamedFile> outputs;
+        for (const std::string& file : paper_files(f.path)) outputs.push_back({"-o", file});
+        check_outputs(options, outputs, inputs);
     }
     return frames;
 }

@@ -6,6 +6,7 @@
 #include "commands/limit_report.h"
 #include "commands/limit_scene.h"
 #include "commands/options.h"
+#include "commands/output.h"
 #include "error.h"
 #include "io/atomic_file.h"
 #include "io/cage_obj.h"
@@ -51,9 +52,6 @@ exit codes     0 what must be equal is
 )";
 
 void write_report(const std::string& folder, const LimitResult& result) {
-    std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    if (failed) throw Error(ErrorKind::io, folder + ": cannot make this folder: " + failed.message());
     write_atomically((std::filesystem::path(folder) / "limit.json").string(), [&](std::ostream& out) { out << limit_json(result); });
     write_limit_picture((std::filesystem::path(folder) / "limit.png").string(), result);
 }
@@ -85,6 +83,7 @@ int run(const std::vector<std::string>& arguments) {
     if (options.words().size() != 1) options.fail("found " + std::to_string(options.words().size()) + " file names, expected one cage, CAGE.obj");
     const std::string word = options.word("--scheme", limit_schemes());
     const auto scheme = static_cast<Scheme>(std::find(limit_schemes().begin(), limit_schemes().end(), word) - limit_schemes().begin());
+    if (const auto folder = options.value("-o")) check_outputs_in(options, *folder, {"limit.json", "limit.png"}, {{"CAGE.obj", options.words().front()}});
     const LimitResult result = measure(options.words().front(), scheme, options);
     if (const auto folder = options.value("-o")) write_report(*folder, result);
     if (options.has("--json")) std::cout << limit_json(result);

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "commands/output.h"
 #include "error.h"
 #include "io/atomic_file.h"
 #include "json_text.h"
@@ -60,14 +61,13 @@ void write_cage(std::ostream& out, const Cage& cage) {
     out << "t interpolateboundary 1/0/0 0\n";
 }
 
+std::string cage_name(std::size_t k) { return "cage-" + std::to_string(k) + ".obj"; }
+
 void write_files(const std::string& folder, const std::string& text, const Reports& reports) {
-    std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    if (failed) throw Error(ErrorKind::io, folder + ": cannot make this folder: " + failed.message());
     const std::filesystem::path path(folder);
     write_atomically((path / "limit.json").string(), [&](std::ostream& out) { out << text; });
     for (std::size_t k = 0; k < reports.size(); ++k)
-        if (!reports[k].levels.empty()) write_atomically((path / ("cage-" + std::to_string(k) + ".obj")).string(), [&](std::ostream& out) { write_cage(out, reports[k].finest); });
+        if (!reports[k].levels.empty()) write_atomically((path / cage_name(k)).string(), [&](std::ostream& out) { write_cage(out, reports[k].finest); });
 }
 
 }  // namespace
@@ -76,8 +76,14 @@ int run_limit_scene(const Options& options) {
     if (!options.words().empty()) options.fail("found " + options.words().front() + " beside --scene, expected a cage or a scene, not both");
     const std::string path = *options.value("--scene"), name = options.required("--surface", "name the surface of the scene to compare");
     const Scene scene = options.scene_at(path);
+    const Composite patches = find_patches(scene, name);
+    if (const auto folder = options.value("-o")) {
+        std::vector<std::string> names{"limit.json"};
+        for (std::size_t k = 0; k < patches.size(); ++k) names.push_back(cage_name(k));
+        check_outputs_in(options, *folder, names, inputs_of(scene));
+    }
     Reports reports;
-    for (const Member& m : find_patches(scene, name)) reports.push_back(compare_with_spline(m));
+    for (const Member& m : patches) reports.push_back(compare_with_spline(m));
     const std::string text = json(path, name, reports);
     if (const auto folder = options.value("-o")) write_files(*folder, text, reports);
     if (options.has("--json")) std::cout << text;

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "error.h"
+#include "io/atomic_file.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -15,16 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a file lies or will lie, links followed.
-fs::path place_of(const std::string& path) {
-    std::error_code code;
-    const fs::path all = fs::absolute(path, code), real = fs::weakly_canonical(all, code);
-    return code ? all.lexically_normal() : real;
-}
 bool is_device(const std::string& path) {
     std::error_code code;
     const fs::file_status s = fs::status(path, code);
     return fs::exists(s) && !fs::is_regular_file(s) && !fs::is_directory(s);
+}
+/// Where a file lies or will lie, links followed.
+fs::path place_of(const std::string& path) {
+    std::error_code code;
+    const std::string target = is_device(path) ? path : behind_links(path);
+    const fs::path all = fs::absolute(target.empty() ? path : target, code), real = fs::weakly_canonical(all, code);
+    return code ? all.lexically_normal() : real;
 }
 bool same_file(const std::string& a, const std::string& b) {
     if (is_device(a)) return false;  // /dev/null holds nothing that could be lost
@@ -41,11 +43,18 @@ void check_writable(const std::string& path) {
         if (::access(path.c_str(), W_OK) != 0) fail(errno);
         return;
     }
+    if (behind_links(path).empty()) fail(errno);
     const fs::path folder = place_of(path).parent_path() / ".";
     if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(errno);
 }
 
 }  // namespace
+
+std::vector<NamedFile> inputs_of(const Scene& scene) {
+    std::vector<NamedFile> files{{"SCENE", scene.path}};
+    for (const std::string& path : scene.included) files.push_back({"a definition in SCENE", path});
+    return files;
+}
 
 void check_outputs(const Options& options, const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
     std::vector<NamedFile> others = inputs;
@@ -59,6 +68,15 @@ void check_outputs(const Options& options, const std::vector<NamedFile>& outputs
     }
     for (const NamedFile& o : outputs)
         if (o.path != "-") check_writable(o.path);
+}
+
+void check_outputs_in(const Options& options, const std::string& folder, const std::vector<std::string>& names, const std::vector<NamedFile>& inputs) {
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    if (failed) throw Error(ErrorKind::io, folder + ": cannot make this folder: " + failed.message());
+    std::vector<NamedFile> outputs;
+    for (const std::string& name : names) outputs.push_back({"-o", (fs::path(folder) / name).string()});
+    check_outputs(options, outputs, inputs);
 }
 
 }  // namespace isoparm

@@ -81,8 +81,11 @@ int run(const std::vector<std::string>& arguments) {
     check_picture_path(options, output);
     std::vector<NamedFile> files;
     for (const std::string& file : paper_files(output)) files.push_back({"-o", file});
-    check_outputs(options, files, {{"SCENE", options.scene_path()}});
-    render_one(scene_of(options), output, how, options);
+    const Scene scene = scene_of(options);
+    std::vector<NamedFile> inputs = inputs_of(scene);
+    if (const auto camera = options.value("--camera")) inputs.push_back({"--camera", *camera});
+    check_outputs(options, files, inputs);
+    render_one(scene, output, how, options);
     return kSuccess;
 }
 

@@ -119,10 +119,10 @@ std::string geometry_of(const Composite& patches) {
 }
 
 /// Names that the study writes at the end must be free, or another study's.
-void check_folder(const StudyStore& store, const Options& options) {
+void check_folder(const StudyStore& store, const Scene& scene, const Options& options) {
     std::vector<NamedFile> outputs;
     for (const char* name : {"study.json", "study.csv", "index.html"}) outputs.push_back({"-o", store.path(name)});
-    check_outputs(options, outputs, {{"SCENE", options.scene_path()}});
+    check_outputs(options, outputs, inputs_of(scene));
     const std::string json = store.path("study.json");
     bool ours = false;
     try {
@@ -255,7 +255,7 @@ int run(const std::vector<std::string>& arguments) {
             study.options += (study.options.empty() ? "" : " ") + std::string(name) + " " + value;
 
     const StudyStore store(folder);
-    check_folder(store, options);
+    check_folder(store, study.scene, options);
     const std::vector<StudyRow> rows = Runner(study, store).run();
     write_results(study, store, rows);
     if (!study.quiet) std::fprintf(stderr, "%s: %zu runs\n", store.path("index.html").c_str(), rows.size());

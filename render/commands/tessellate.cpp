@@ -61,7 +61,7 @@ that patches share are found and share their vertices.
 )";
 
 /// Fails now rather than after the work.
-void check_output(const std::string& path, const Options& options) {
+void check_output(const std::string& path, const Scene& scene, const Options& options) {
     const std::string extension = extension_of(path);
     if (extension != ".ply" && extension != ".obj" && extension != ".stl" && extension != ".glb")
         options.fail("-o: found " + quoted(path) + ", expected a name that ends in .ply, .obj, .stl or .glb");
@@ -69,7 +69,7 @@ void check_output(const std::string& path, const Options& options) {
     if (const auto report = options.value("--report")) outputs.push_back({"--report", *report});
     if (const auto certificate = options.value("--certificate")) outputs.push_back({"--certificate", *certificate});
     if (options.value("--report") == "-" && options.value("--certificate") == "-") options.fail("--report - and --certificate - both go to standard output");
-    check_outputs(options, outputs, {{"SCENE", options.scene_path()}});
+    check_outputs(options, outputs, inputs_of(scene));
 }
 
 /// The double that float32 makes of one. Through memory: g++ 12.2 -O3 leaves the conversion out of the last turns of a vectorised loop.
@@ -200,13 +200,13 @@ int run(const std::vector<std::string>& arguments) {
                           {{"-o", true}, {"--surface", true}, {"--tolerance", true}, {"--measure", true}, {"--quality", true}, {"--vertices", true},
                            {"--max-triangles", true}, {"--report", true}, {"--set", true}, {"--normals", true}, {"--certificate", true}});
     const std::string output = options.required("-o", "the mesh file to write");
-    check_output(output, options);
     const std::string measure = options.word("--measure", {"geometric", "parametric"});
     const std::string quality = options.word("--quality", {"fast", "optimal"});
     const bool free = options.word("--vertices", {"surface", "free"}) == "free";
     const auto given = options.tolerance();
 
     const Scene scene = options.scene();
+    check_output(output, scene, options);
     const Selection selection = select_patches(scene, options);
     const Bounds box = bounding_box(selection.patches);
     const double tolerance = absolute_tolerance(given ? *given : scene.tolerance, finite_diagonal(scene, box), options);

@@ -1,5 +1,5 @@
 // faults.cpp -- a library for LD_PRELOAD: the calls of one kind fail from the N-th on, as on a full disk or without memory.
-//   ISOPARM_FAULT     write, fsync, rename, open (of files to be written), read (opening of files to be read), malloc
+//   ISOPARM_FAULT     write, fsync, rename, open (of files to be written), read (opening of files to be read), malloc, random (always 0)
 //   ISOPARM_FAULT_AT  N, from 1;  ISOPARM_FAULT_ONCE=1  only the N-th fails
 //   ISOPARM_FAULT_LOG a file that gets a line once a call was made to fail: where N is beyond all calls there is none
 // Only the process that was started is counted, not its children. fopen and fwrite have entries of their own, as the C
@@ -26,7 +26,7 @@ void* __libc_memalign(size_t, size_t);
 
 namespace {
 
-enum class Kind { none, write, fsync, rename, open, read, malloc };
+enum class Kind { none, write, fsync, rename, open, read, malloc, random };
 Kind kind = Kind::none;
 long fails_at = 0, owner = 0;
 bool once = false;
@@ -41,8 +41,8 @@ __attribute__((constructor)) void configure() {
     once = getenv("ISOPARM_FAULT_ONCE") != nullptr;
     fails_at = atol(at);
     owner = syscall(SYS_getpid);
-    static const char* const names[] = {"", "write", "fsync", "rename", "open", "read", "malloc"};
-    for (int i = 1; i < 7; ++i)
+    static const char* const names[] = {"", "write", "fsync", "rename", "open", "read", "malloc", "random"};
+    for (int i = 1; i < 8; ++i)
         if (!strcmp(what, names[i])) kind = static_cast<Kind>(i);
 }
 
@@ -97,6 +97,11 @@ int rename(const char* from, const char* to) {
     if (!fails(Kind::rename)) return static_cast<int>(syscall(SYS_rename, from, to));
     errno = EIO;
     return -1;
+}
+ssize_t getrandom(void* bytes, size_t size, unsigned flags) {
+    if (!fails(Kind::random)) return syscall(SYS_getrandom, bytes, size, flags);
+    memset(bytes, 0, size);
+    return static_cast<ssize_t>(size);
 }
 int open(const char* path, int flags, ...) {
     va_list rest;
