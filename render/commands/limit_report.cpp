@@ -64,6 +64,8 @@ std::string ratio(const Measure& x) {
 const char* verdict(const LimitReport& r, bool equal) {
     return r.hidden_by_rounding() ? "says nothing, rounding is more than 1e-6 of the cage" : equal ? "equal up to rounding" : "NOT EQUAL";
 }
+/// Has anything been measured that must be equal?
+bool any_identity(const LimitResult& r) { return r.regular.deviation || r.irregular.subcells.deviation || r.irregular.masks_gap || r.irregular.loop_edges; }
 /// Of Loop's scheme: of Nielson's surfaces over whole faces.
 Measure deviation_of_regular(const LimitResult& result) {
     for (const LoopLevel& row : result.irregular.loop)
@@ -156,8 +158,7 @@ const std::vector<std::string>& limit_schemes() {
 }
 
 std::optional<bool> LimitResult::identity() const {
-    const bool any = regular.deviation || irregular.subcells.deviation || irregular.masks_gap || irregular.loop_edges;
-    if (!any || regular.hidden_by_rounding()) return {};
+    if (!any_identity(*this) || regular.hidden_by_rounding()) return {};
     return regular.identity_holds() && irregular.identities_hold(regular.tolerance);
 }
 std::string LimitResult::rounding_note() const {
@@ -165,7 +166,7 @@ std::string LimitResult::rounding_note() const {
            brief(regular.diagonal) + ": nothing measured says anything; move it to the origin";
 }
 bool LimitResult::something_compared() const {
-    return regular.deviation || irregular.subcells.deviation || irregular.masks_gap || !irregular.by_level.empty() || !irregular.loop.empty();
+    return any_identity(*this) || !irregular.by_level.empty() || !irregular.loop.empty();
 }
 
 std::string limit_json(const LimitResult& result) {
