@@ -1,12 +1,49 @@
 #include "cage.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
 
 #include "error.h"
 
 namespace isoparm {
 namespace {
 constexpr std::size_t max_face_size = 65535;  // OpenSubdiv's VALENCE_LIMIT
+
+/// Two triangles on the same three vertices, and no other one at one of these. The faces are those of a cage for Loop's scheme.
+void refuse_valence_two(const Cage& cage) {
+    std::vector<int> count(cage.positions.size(), 0);
+    for (const auto& f : cage.faces)
+        for (const int v : f) ++count[v];
+    std::map<std::array<int, 3>, std::size_t> seen;
+    for (std::size_t k = 0; k < cage.faces.size(); ++k) {
+        std::array<int, 3> f{cage.faces[k][0], cage.faces[k][1], cage.faces[k][2]};
+        std::sort(f.begin(), f.end());
+        const auto [first, fresh] = seen.try_emplace(f, k);
+        if (fresh) continue;
+        for (const int v : f)
+            if (count[v] == 2)
+                throw_input("vertex " + std::to_string(v) + ": found two edges, between " + face_name(cage, first->second) + " and " + face_name(cage, k) +
+                            " on the same three vertices, expected three edges or more at a vertex inside; split one of these triangles");
+    }
+}
+}  // namespace
+
+double diagonal(const Cage& cage) {
+    Point low = cage.positions[cage.faces[0][0]], high = low;
+    for (const auto& f : cage.faces)
+        for (const int v : f) {
+            const Point& p = cage.positions[v];
+            for (int axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], p[axis]), high[axis] = std::max(high[axis], p[axis]);
+        }
+    return std::hypot(high.x - low.x, high.y - low.y, high.z - low.z);
+}
+double reach(const Cage& cage) {
+    double far = 0;
+    for (const auto& f : cage.faces)
+        for (const int v : f) far = std::max(far, std::hypot(cage.positions[v].x, cage.positions[v].y, cage.positions[v].z));
+    return far;
 }
 
 std::string face_name(const Cage& cage, std::size_t face) {
@@ -31,6 +68,7 @@ void check_cage(const Cage& cage, Scheme scheme) {
         std::sort(f.begin(), f.end());
         if (std::adjacent_find(f.begin(), f.end()) != f.end()) throw_input(name + " is degenerate: found a vertex twice, expected different vertices");
     }
+    if (scheme == Scheme::loop) refuse_valence_two(cage);
     for (const Point& p : cage.positions)
         if (!finite(p)) throw_input("a vertex of the cage is not finite");
     const auto not_negative = [](double s) {

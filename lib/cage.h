@@ -31,10 +31,14 @@ struct Cage {
     std::vector<int> face_lines;  // where each face was read, for messages; or empty
 };
 
+/// Of the vertices that faces have, for cages that check_cage() takes: others are no part of the surface, and may be far away. The bounding box's
+/// diagonal; the largest distance from the origin. Neither loses a size that a double can hold.
+double diagonal(const Cage& cage);
+double reach(const Cage& cage);
 /// "face 3 (line 12)", for messages.
 std::string face_name(const Cage& cage, std::size_t face);
 /// Throws Error(input) when there is no face, indices are out of range, a face is degenerate or of a size that the scheme does not know, a position is
-/// not finite or a sharpness negative.
+/// not finite, a sharpness negative, or (Loop) a vertex inside of valence 2: of its two triangles refinement makes edges that have the same ends.
 void check_cage(const Cage& cage, Scheme scheme);
 
 }  // namespace isoparm

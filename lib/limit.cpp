@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "check_size.h"
 #include "limit_refiner.h"
 
 namespace isoparm {
@@ -108,6 +109,7 @@ struct LimitSurface::Impl {
     Impl(const Cage& c, Scheme s) : cage(c), scheme(s) {
         const OsdMessages messages;
         refiner = make_refiner(cage, scheme, messages);
+        check_size(diagonal(cage), "a cage", "compare");
         make_surfaces();  // what is said about the patches of irregular faces is of no concern: they are only counted
     }
 

@@ -39,7 +39,7 @@ struct LimitEdge {
 class LimitSurface {
 public:
     /// Throws Error(input) when indices are out of range, a face is degenerate or of a size that the scheme does not know,
-    /// and with OpenSubdiv's own words when it refuses the cage. (OpenSubdiv reports through a global function, so
+    /// the cage is smaller than 1e-70 or larger than 1e70, and with OpenSubdiv's own words when it refuses the cage. (OpenSubdiv reports through a global function, so
     /// construction takes a lock.) Afterwards immutable, cheap to copy, and safe to call from every thread.
     LimitSurface(const Cage& cage, Scheme scheme);
 

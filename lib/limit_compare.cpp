@@ -162,7 +162,7 @@ LimitReport compare_limit(const LimitSurface& limit, const LimitOptions& options
     report.scheme = limit.scheme();
     report.faces = limit.faces();
     report.samples = options.samples;
-    for (const Point& p : limit.cage().positions) report.size = std::max(report.size, length(p));
+    report.size = reach(limit.cage()), report.diagonal = diagonal(limit.cage());
     report.tolerance = 200 * std::numeric_limits<double>::epsilon() * report.size;
     count(limit, report);
     if (limit.scheme() == Scheme::loop) return report;

@@ -37,7 +37,8 @@ struct LimitReport {
     int faces = 0, regular = 0, irregular = 0, without_limit = 0;
     std::vector<UncomparedFace> not_compared;
     int samples = 0;      // each way over a face
-    double size = 0;      // max |P| over the vertices of the cage
+    double size = 0;      // max |P| over the vertices that faces of the cage have
+    double diagonal = 0;  // of the bounding box of these
     double tolerance = 0; // what the deviation and the network's gap may be: 200 eps max |P|
 
     std::optional<double> deviation, normal_degrees;  // composite Hermite Coons against the limit, regular faces
@@ -56,6 +57,8 @@ struct LimitReport {
 
     /// Deviation and network gap are within the tolerance (also when there was nothing to compare).
     bool identity_holds() const;
+    /// So far from the origin that the tolerance, of rounding there, is more than 1e-6 of the diagonal: then that says nothing.
+    bool hidden_by_rounding() const { return !(tolerance <= 1e-6 * diagonal); }
 };
 
 /// Faces of Loop's scheme are counted only. Safe to call from every thread; the result does not depend on their number.

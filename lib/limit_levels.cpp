@@ -198,8 +198,7 @@ LimitLevels measure_levels(const LimitSurface& limit, const LevelOptions& option
         throw Error(ErrorKind::usage, "samples each way over a cell: found " + std::to_string(options.samples) + ", expected 2 to 65");
     LimitLevels result;
     result.compared.assign(limit.faces(), 0), result.subcells.compared = result.compared;
-    double size = 0;
-    for (const Point& p : limit.cage().positions) size = std::max(size, length(p));
+    const double size = reach(limit.cage());
     if (limit.scheme() == Scheme::loop) measure_loop(limit, std::min(options.levels, 6), options.samples, kNoise * size, result);
     if (limit.faces() == regular(limit)) return result;
     try {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "check_size.h"
 #include "error.h"
 #include "limit.h"
 
@@ -131,10 +132,9 @@ SplineReport compare_with_spline(const Member& member, int levels, int samples) 
         int m = patch.domain() == Domain::quad ? own_cells(patch.lines_u()) : 1, n = patch.domain() == Domain::quad ? own_cells(patch.lines_v()) : 1;
         for (int k = 0; k < levels && (k == 0 || m * n <= 4096); ++k, m *= 2, n *= 2) {
             Cage cage = interpolating_cage(patch, m, n);
+            check_size(diagonal(cage), "a surface with a cell around it", "compare");
             SplineLevel level = compare(patch, cage, m, n, samples);
-            double size = 0;
-            for (const Point& p : cage.positions) size = std::max(size, length(p));
-            const double noise = 1e3 * std::numeric_limits<double>::epsilon() * size;
+            const double noise = 1e3 * std::numeric_limits<double>::epsilon() * reach(cage);
             if (k > 0 && level.deviation > noise) level.ratio = report.levels.back().deviation / level.deviation;
             report.levels.push_back(level);
             report.finest = std::move(cage);

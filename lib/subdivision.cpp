@@ -132,17 +132,6 @@ private:
     std::map<std::pair<int, int>, Edge> edges_;
 };
 
-/// Of the vertices that faces have: others are no part of the surface, and may be far away.
-double diagonal(const Cage& cage) {
-    Point low = cage.positions[cage.faces[0][0]], high = low;
-    for (const auto& f : cage.faces)
-        for (const int v : f) {
-            const Point& p = cage.positions[v];
-            for (int axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], p[axis]), high[axis] = std::max(high[axis], p[axis]);
-        }
-    return distance(low, high);
-}
-
 Point corner(const Ring<Interval>& ring, int k) {
     const auto& p = ring.points[ring.faces[0][k]];
     return {mid(p.x), mid(p.y), mid(p.z)};

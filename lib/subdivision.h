@@ -17,7 +17,7 @@ struct SubdivisionSurface {
 };
 
 /// Throws Error(input) for cages that check_cage() refuses and for edges and vertices that are not manifold, Error(budget) when irregular faces take more
-/// pieces (about 2 kB each; an extraordinary vertex takes about 100 in each of its faces, semi-sharp creases double them with each unit of sharpness). Does not depend on the number of threads.
-SubdivisionSurface make_subdivision(const Cage& cage, Scheme scheme, std::size_t most_pieces = 300'000);
+/// pieces (about 2 kB each; an extraordinary vertex takes about 140 in each of its faces, those counted that are refined, semi-sharp creases double them with each unit of sharpness). Does not depend on the number of threads.
+SubdivisionSurface make_subdivision(const Cage& cage, Scheme scheme, std::size_t most_pieces = 400'000);
 
 }  // namespace isoparm

@@ -234,13 +234,10 @@ private:
     void build(int node, const Ring<Interval>& ring, int depth, FaceLimits& limits) {
         const Subdivider<Interval> s(ring, scheme_);
         const FacePlace at = nodes_[node].at;
-        const auto count = [&] {
-            if (++limits.pieces > limits.most_pieces)
-                throw Error(ErrorKind::budget, "the limit surface consists of more than " + std::to_string(limits.most_pieces) +
-                                                   " pieces; give semi-sharp creases less sharpness, or 10 for infinite, or split the cage");
-        };
+        if (++limits.pieces > limits.most_pieces)  // those that are refined count too: they can be all there is
+            throw Error(ErrorKind::budget, "the limit surface takes more than " + std::to_string(limits.most_pieces) +
+                                               " pieces, refined ones included; give semi-sharp creases less sharpness, or 10 for infinite, or split the cage");
         if (const auto control = s.regular()) {
-            count();
             nodes_[node].cell = static_cast<int>(cells_.size());
             cells_.push_back(make_subdivision_cell(*control, at, scheme_));
             nodes_[node].hull = positions(cells_.back(), {at.across_u(), at.across_v()});
@@ -250,7 +247,6 @@ private:
         }
         const Box3 all = hull_of(ring);
         if (depth == kDeepest || (depth >= kAllSmooth && size_of(all) <= limits.core)) {
-            count();
             nodes_[node].core = static_cast<int>(cores_.size());
             nodes_[node].hull = all;
             int k = 0;  // the extraordinary corner

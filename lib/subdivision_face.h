@@ -18,7 +18,7 @@ namespace isoparm {
 
 struct FaceLimits {
     double core = 0;                   // refined until a core is no larger, in scene units
-    std::size_t most_pieces = 0;       // of all faces together
+    std::size_t most_pieces = 0;       // of all faces together, refined ones included
     std::atomic<std::size_t> pieces{0};
 };
 

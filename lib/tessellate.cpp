@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "check_size.h"
 #include "error.h"
 #include "optimize.h"
 #include "refine.h"
@@ -176,9 +177,7 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     if (options.normal_deviation > 0 && options.quality != Quality::fast) throw_input("a limit of the normal deviation needs the fast quality");
     auto start = std::chrono::steady_clock::now();
     const double diagonal = surface.empty() ? 0 : bounding_box(surface).diagonal();
-    // Fourth powers of lengths must stay in the range of doubles.
-    if (!surface.empty() && !(diagonal > 1e-70 && diagonal < 1e70))
-        throw_input("found a surface of size " + to_text(diagonal) + ", expected one between 1e-70 and 1e70 to tessellate; scale the data");
+    if (!surface.empty()) check_size(diagonal, "a surface", "tessellate");
     const Topology topology = find_topology(surface, join_tolerance(options.tolerance, diagonal));
     const bool turns = options.measure == Measure::geometric && (options.study || options.normal_deviation > 0);
     const double turn = options.normal_deviation > 0 ? tangent_down(options.normal_deviation) : turns ? TriangleBound::none : TriangleBound::unasked;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -227,7 +228,7 @@ TEST(LimitLevels, DoesNotDependOnTheNumberOfThreads) {
 }
 
 // What is measured is as small as the cells; rounding is as large as the coordinates.
-TEST(LimitLevels, HoldFarFromTheOriginAndForOnePoint) {
+TEST(LimitLevels, HoldFarFromTheOriginAndForOneLine) {
     for (const Scheme scheme : {Scheme::catmull_clark, Scheme::loop}) {
         const bool loop = scheme == Scheme::loop;
         Cage c = star(5, loop, 0.2, 0.1);
@@ -238,8 +239,8 @@ TEST(LimitLevels, HoldFarFromTheOriginAndForOnePoint) {
         for (std::size_t k = 0; k < far.by_level.size(); ++k) EXPECT_NEAR(*far.by_level[k].measured.deviation, *near.by_level[k].measured.deviation, 1e-6);
         EXPECT_EQ(far.loop.size(), near.loop.size());
         EXPECT_TRUE(far.identities_hold(200 * eps * 3e7));
-        for (Point& p : c.positions) p = {1, 2, 3};
-        EXPECT_TRUE(levels_of(c, scheme, 2).identities_hold(200 * eps * 4));
+        for (Point& p : c.positions) p = {p.x, p.x, p.x};
+        EXPECT_TRUE(levels_of(c, scheme, 2).identities_hold(200 * eps * 6e7));
     }
 }
 
@@ -286,10 +287,26 @@ TEST(LimitLevelsCommand, FillsTheContract) {
     EXPECT_TRUE(levels[0].at("ratios", "").at("deviation", "").is(Json::Kind::null));
 }
 
+TEST(LimitLevelsCommand, FillsTheContractForLoopsScheme) {
+    const std::string path = testing::TempDir() + "isoparm_limit_star.obj";
+    const Cage c = star(5, true, 0.2, 0.1);
+    std::ofstream out(path);
+    for (const Point& p : c.positions) out << "v " << to_text(p.x) << " " << to_text(p.y) << " " << to_text(p.z) << "\n";
+    for (const auto& f : c.faces) out << "f " << f[0] + 1 << " " << f[1] + 1 << " " << f[2] + 1 << "\n";
+    out.close();
+    const auto [code, text] = limit({path, "--scheme", "loop", "--json", "--levels", "1"});
+    std::filesystem::remove(path);
+    EXPECT_EQ(code, kSuccess);
+    const Json j = Json::parse(text, "out"), row = j.at("loop", "")[0];
+    EXPECT_EQ(row.at("method", "").string(), "nielson_c1");
+    EXPECT_EQ(j.at("max_deviation", "").at("regular", "").number(), row.at("deviation", "").number());
+    EXPECT_GT(row.at("deviation", "").number(), 0);
+}
+
 TEST(LimitLevelsCommand, ComparesLoopsSchemeToo) {
     const auto [code, out] = limit({cage_path("icosahedron"), "--scheme", "loop", "--levels", "2"});
     EXPECT_EQ(code, kSuccess);
-    EXPECT_NE(out.find("valence 5 (12 vertices), nielson_c1; expected ratios: 0.4523 lambda"), std::string::npos) << out;
+    EXPECT_NE(out.find("valence 5 (12 vertices), nielson_c1; expected ratios (to the level before): 0.4523 lambda"), std::string::npos) << out;
 }
 
 /// The folder of cages named by ISOPARM_CAGES, when there is one: *.obj, those of Loop's scheme with that word in their name.

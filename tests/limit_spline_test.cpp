@@ -62,6 +62,29 @@ TEST(LimitSpline, TrianglesHaveNoGrid) {
     EXPECT_NE(r.refused.find("on a triangle"), std::string::npos);
 }
 
+TEST(LimitSpline, RefusesSizesThatCannotBeMeasured) {
+    for (const double size : {0.0, 1e-200, 1e160}) {
+        const SplineReport r = compare_with_spline({"S", make_bezier_patch({{{0, 0, 0}, {0, size, 0}}, {{size, 0, 0}, {size, size, 0.5 * size}}})});
+        EXPECT_TRUE(r.levels.empty()) << size;
+        EXPECT_NE(r.refused.find("expected one between 1e-70 and 1e70"), std::string::npos) << r.refused;
+    }
+}
+
+TEST(LimitSpline, TheCommandRefusesWhatIsForCages) {
+    const std::string scene = std::string(ISOPARM_SOURCE_DIR) + "/scenes/coons.json";
+    for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{{"--levels", "3"}, {"--samples", "9"}, {"--scheme", "nonsense"}}) {
+        std::vector<std::string> arguments{"--scene", scene, "--surface", "S"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        try {
+            limit_command.run(arguments);
+            ADD_FAILURE() << "accepted " << more[0];
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), ErrorKind::usage);
+            EXPECT_NE(std::string(e.what()).find(more[0] + " beside --scene"), std::string::npos) << e.what();
+        }
+    }
+}
+
 TEST(LimitSpline, TheCommandComparesScenes) {
     const std::string scene = std::string(ISOPARM_SOURCE_DIR) + "/scenes/coons.json", folder = testing::TempDir() + "isoparm_limit_spline";
     testing::internal::CaptureStdout();

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "commands/command.h"
+#include "commands/limit_report.h"
 #include "error.h"
 #include "io/cage_obj.h"
 #include "json.h"
@@ -249,12 +250,39 @@ TEST(LimitReport, AnswersForAwkwardCages) {
 
 TEST(LimitReport, DegenerateShapesStillAnswer) {
     Cage c = cage("torus");
-    for (Point& p : c.positions) p = {1, 2, 3};
+    for (Point& p : c.positions) p = {p.x, 2, 3};
     const LimitReport r = report(c);
     EXPECT_TRUE(r.identity_holds());
     EXPECT_FALSE(r.normal_degrees);
-    for (Point& p : c.positions) p = {0, 0, 0};
-    EXPECT_EQ(*report(c).deviation, 0);
+}
+
+// Where squares of lengths leave the range of doubles every deviation is 0, or none is finite.
+TEST(LimitReport, RefusesSizesThatCannotBeMeasured) {
+    for (const double scale : {0.0, 1e-200, 1e-72, 1e72, 1e160}) {
+        Cage c = cage("torus");
+        for (Point& p : c.positions) p = scale * p;
+        try {
+            LimitSurface(c, Scheme::catmull_clark);
+            ADD_FAILURE() << "accepted " << scale;
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), ErrorKind::input);
+            EXPECT_NE(std::string(e.what()).find("expected one between 1e-70 and 1e70 to compare"), std::string::npos) << e.what();
+        }
+    }
+    for (const double scale : {1e-69, 1e68}) {
+        Cage c = cage("torus");
+        for (Point& p : c.positions) p = scale * p;
+        const LimitReport r = report(c);
+        EXPECT_TRUE(r.identity_holds());
+        EXPECT_GT(*r.bilinear_coons, 1e-3 * scale);
+    }
+}
+
+TEST(LimitReport, VerticesThatNoFaceHasDoNotWidenTheTolerance) {
+    Cage c = cage("torus");
+    const LimitReport near = report(c);
+    c.positions.emplace_back(1e20, 0, 0);
+    EXPECT_EQ(report(c).tolerance, near.tolerance);
 }
 
 TEST(LimitReport, AFailureIsNeverOverlooked) {
@@ -318,6 +346,45 @@ TEST(LimitCommand, NamesWhatItCannotCompare) {
     EXPECT_NE(a.out.find("vertex 0 is not manifold"), std::string::npos) << a.out;
     EXPECT_NE(a.out.find("boundary corner that is rounded: face 0 (line 10)"), std::string::npos) << a.out;
     std::filesystem::remove(path);
+}
+
+/// The torus moved along x, as a file.
+std::string moved_torus(double by) {
+    const Cage c = cage("torus");
+    const std::string path = testing::TempDir() + "isoparm_limit_moved.obj";
+    std::ofstream out(path);
+    for (const Point& p : c.positions) out << "v " << to_text(p.x + by) << " " << to_text(p.y) << " " << to_text(p.z) << "\n";
+    for (const auto& f : c.faces) out << "f " << f[0] + 1 << " " << f[1] + 1 << " " << f[2] + 1 << " " << f[3] + 1 << "\n";
+    return path;
+}
+
+TEST(LimitCommand, ClaimsNoIdentityWhereRoundingHidesIt) {
+    const std::string near = moved_torus(1e6);
+    const Answer a = limit({near, "--json"});
+    EXPECT_EQ(a.code, kSuccess);
+    EXPECT_NE(a.out.find("\"identity\": true"), std::string::npos);
+    const std::string far = moved_torus(1e15);
+    const Answer b = limit({far, "--json"});
+    EXPECT_EQ(b.code, kNotComparable);
+    EXPECT_NE(b.out.find("\"identity\": null"), std::string::npos);
+    EXPECT_NE(limit({far}).out.find("says nothing"), std::string::npos);
+    std::filesystem::remove(far);
+}
+
+// Every identity that decides about the exit code decides about the report's word.
+TEST(LimitCommand, IdentityCountsAllThatMustBeEqual) {
+    LimitResult r;
+    r.regular.tolerance = 1e-7, r.regular.diagonal = 1;
+    EXPECT_FALSE(r.identity() || r.something_compared());
+    r.irregular.masks_gap = 1e-8;
+    EXPECT_TRUE(r.identity().value() && r.something_compared());
+    r.irregular.masks_gap = 1e-3;
+    EXPECT_FALSE(r.identity().value());
+    EXPECT_NE(limit_json(r).find("\"identity\": false"), std::string::npos);
+    r.irregular.masks_gap.reset(), r.irregular.loop_edges = 1e-3;
+    EXPECT_FALSE(r.identity().value());
+    r.regular.diagonal = 0.01;
+    EXPECT_FALSE(r.identity().has_value());
 }
 
 TEST(LimitCommand, RefusesBadArguments) {

@@ -14,6 +14,7 @@
 #include "cages.h"
 #include "error.h"
 #include "limit.h"
+#include "subdivision_face.h"
 #include "tessellation_options.h"
 #include "triangle_tree.h"
 
@@ -262,6 +263,28 @@ TEST(Subdivision, RefusesWhatHasNoSurface) {
     for (const auto& f : sharp.faces)
         for (int k = 0; k < 4; ++k) sharp.creases.push_back({f[k], f[(k + 1) % 4], 9.9});
     expect_refused(sharp, Scheme::catmull_clark, ErrorKind::budget, "pieces");
+}
+
+// Two triangles back to back: refined for Loop's scheme, edges have the same ends, and no sub-face would ever be regular.
+TEST(Subdivision, RefusesLoopsPillowAndCountsPiecesThatAreRefined) {
+    Cage pillow;
+    pillow.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, pillow.faces = {{0, 1, 2}, {0, 2, 1}};
+    expect_refused(pillow, Scheme::loop, ErrorKind::input, "vertex 0: found two edges, between face 0 and face 1");
+    const Composite quads = make_subdivision(pillow, Scheme::catmull_clark).patches;  // of valence 2 as well, which does no harm there
+    EXPECT_EQ(quads.size(), 6u);
+    for (const Member& m : quads) EXPECT_EQ(m.patch.point(0.3, 0.4).z, 0);
+    Ring<Interval> ring;
+    for (const Point& p : pillow.positions) ring.points.push_back({Interval(p.x), Interval(p.y), Interval(p.z)});
+    ring.sharpness.assign(3, 0), ring.faces = pillow.faces;
+    FaceLimits limits;
+    limits.core = 1e-11, limits.most_pieces = 50;
+    try {
+        make_subdivision_face(ring, Scheme::loop, limits);
+        ADD_FAILURE() << "accepted";
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::budget);
+        EXPECT_NE(std::string(e.what()).find("more than 50 pieces, refined ones included"), std::string::npos) << e.what();
+    }
 }
 
 }  // namespace

@@ -26,13 +26,16 @@ rounding; bilinear Coons patches on the same curves, the negative control, need 
 on sub-cells: at semi-sharp creases of sharpness s on those of level ceil(s).
 Extraordinary vertices: bilinear Coons and Gregory patches on the limit's curves and tangents in the cells around the
 vertex, level by level: deviation, its part along the normal, and the angle of normals across edges (G1) must fall
-by lambda, mu and mu/lambda a level, the eigenvalues of subdivision; the ratios observed stand beside them.
+by lambda, mu and mu/lambda a level, the eigenvalues of subdivision; the ratios observed ("ratios" of "by_level": this
+level divided by the one before, so below 1) stand beside them.
 Loop's scheme (triangles): regular faces are quartic box splines, which no Coons triangle here reproduces: deviations of
-seven methods over ever smaller triangles, with the ratios that their orders promise; extraordinary vertices as above.
+seven methods over ever smaller triangles, with the ratios that their orders promise ("ratio" of "loop": the level before
+divided by this one, so 4, 8 or 16); extraordinary vertices as above. "max_deviation" has Nielson's over whole faces.
 
 With --scene: each patch of a surface on rectangles against the limit of a cage: the control points of the uniform bicubic
-B-spline through ever more of its points; the deviation must fall 16 times a halving where the patch is smooth. -o DIR
-writes the last cages as well, DIR/cage-0.obj ...
+B-spline through ever more of its points; the deviation must fall 16 times a halving where the patch is smooth ("ratio":
+the one before divided by this one). -o DIR writes DIR/limit.json and the last cages, DIR/cage-0.obj ..., of patches that
+could be compared. --scheme, --samples and --levels are for cages.
 
 CAGE.obj       v and f lines, and OpenSubdiv's tags (indices from 0): t crease 2/1/0 V0 V1 SHARPNESS,
                t corner 1/1/0 V SHARPNESS, t hole 1/0/0 FACE, t interpolateboundary 1/0/0 N
@@ -40,15 +43,17 @@ CAGE.obj       v and f lines, and OpenSubdiv's tags (indices from 0): t crease 2
 --scheme S     catmull-clark (default), loop, or bilinear
 --json         the report as JSON on standard output
 -o DIR         the report as DIR/limit.json as well, and DIR/limit.png: the surface coloured by how far the composite of
-               one patch a face is from it
+               one patch a face is from it, where the cage has irregular faces that could be compared. Nothing else in
+               DIR is touched: files of other runs stay
 --samples N    samples each way over a face and along an edge, 2 to 1025 (default 17); over a cell at a vertex
                65 at most (default 9)
 --levels K     the last level around extraordinary vertices, 0 to 12 (default 6)
 
 exit codes     0 what must be equal is
-               2 it is not: beyond 200 eps max|P|, P the vertices of the cage
-               3 nothing in the cage could be compared
-               4, 64, 65 a file cannot be read or written, usage, bad cage
+               2 it is not: beyond 200 eps max|P|, P the vertices of the cage's faces
+               3 nothing in the cage could be compared, or nothing that says anything, so far from the origin that
+                 200 eps max|P| is more than 1e-6 of the cage's diagonal
+               4, 64, 65 a file cannot be read or written, usage, bad cage (also one smaller than 1e-70 or larger than 1e70)
 )";
 
 void write_report(const std::string& folder, const LimitResult& result) {
@@ -92,7 +97,11 @@ int run(const std::vector<std::string>& arguments) {
         if (!options.quiet()) std::cerr << "isoparm limit: no face could be compared" << (result.irregular.refused.empty() ? "" : ": " + result.irregular.refused) << "\n";
         return kNotComparable;
     }
-    return result.identities_hold() ? kSuccess : kCheckFailed;
+    if (result.regular.hidden_by_rounding()) {
+        if (!options.quiet()) std::cerr << "isoparm limit: " << result.rounding_note() << "\n";
+        return kNotComparable;
+    }
+    return result.identity().value_or(true) ? kSuccess : kCheckFailed;
 }
 
 }  // namespace

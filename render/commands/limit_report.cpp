@@ -61,7 +61,17 @@ std::string ratio(const Measure& x) {
     else out << "-";
     return out.str();
 }
-const char* verdict(bool equal) { return equal ? "equal up to rounding" : "NOT EQUAL"; }
+const char* verdict(const LimitReport& r, bool equal) {
+    return r.hidden_by_rounding() ? "says nothing, rounding is more than 1e-6 of the cage" : equal ? "equal up to rounding" : "NOT EQUAL";
+}
+/// Has anything been measured that must be equal?
+bool any_identity(const LimitResult& r) { return r.regular.deviation || r.irregular.subcells.deviation || r.irregular.masks_gap || r.irregular.loop_edges; }
+/// Of Loop's scheme: of Nielson's surfaces over whole faces.
+Measure deviation_of_regular(const LimitResult& result) {
+    for (const LoopLevel& row : result.irregular.loop)
+        if (row.level == 0 && row.method == "nielson_c1") return row.deviation;
+    return result.regular.deviation;
+}
 std::string place(const Cage& cage, int face) {
     return "face " + std::to_string(face) + (static_cast<std::size_t>(face) < cage.face_lines.size() ? " (line " + std::to_string(cage.face_lines[face]) + ")" : "");
 }
@@ -69,7 +79,7 @@ std::string place(const Cage& cage, int face) {
 void print_regular(const Cage& cage, const LimitReport& r, std::ostream& out) {
     if (r.deviation) {
         out << "\nHermite Coons composite against the limit surface, regular faces (" << r.samples << "x" << r.samples << " samples each)\n"
-            << "  deviation        " << in_eps(r.deviation, r.size) << ", at most 200 allowed: " << verdict(r.identity_holds()) << "\n"
+            << "  deviation        " << in_eps(r.deviation, r.size) << ", at most 200 allowed: " << verdict(r, r.identity_holds()) << "\n"
             << "  worst            " << place(cage, r.worst_face) << " at " << r.worst_u << "," << r.worst_v << "\n"
             << "  normals          " << brief(r.normal_degrees) << " degrees\n"
             << "  tangents, twists " << brief(r.network_gap) << "\n"
@@ -85,10 +95,10 @@ void print_subcells(const LimitResult& result, std::ostream& out) {
     const double tolerance = result.regular.tolerance;
     if (s.cells > 0)
         out << "\nThe same on regular sub-cells of irregular faces: " << s.cells << " cells in " << s.faces << " faces, down to level " << s.deepest << " (sampled)\n"
-            << "  deviation        " << in_eps(s.deviation, result.regular.size) << ": " << verdict(!(*s.deviation > tolerance)) << "\n";
+            << "  deviation        " << in_eps(s.deviation, result.regular.size) << ": " << verdict(result.regular, *s.deviation <= tolerance) << "\n";
     if (const Measure& gap = result.irregular.masks_gap)
         out << "\nLimit positions of isoparm and of OpenSubdiv's masks, vertices of level 1\n"
-            << "  largest gap      " << in_eps(gap, result.regular.size) << ": " << verdict(!(*gap > tolerance)) << "\n";
+            << "  largest gap      " << in_eps(gap, result.regular.size) << ": " << verdict(result.regular, *gap <= tolerance) << "\n";
 }
 
 void print_levels(const LimitLevels& levels, std::ostream& out) {
@@ -104,7 +114,7 @@ void print_levels(const LimitLevels& levels, std::ostream& out) {
             valence = row.valence, method = row.method;
             const LimitValence& t = theory(levels, valence);
             out << "\n  valence " << valence << " (" << t.vertices << (t.vertices == 1 ? " vertex" : " vertices") << "), " << method
-                << "; expected ratios: " << ratio(t.lambda) << " lambda, " << ratio(t.mu) << " mu, " << ratio(t.mu / t.lambda) << " mu/lambda\n  level  deviation   ratio  along normal   ratio  G1 degrees   ratio\n";
+                << "; expected ratios (to the level before): " << ratio(t.lambda) << " lambda, " << ratio(t.mu) << " mu, " << ratio(t.mu / t.lambda) << " mu/lambda\n  level  deviation   ratio  along normal   ratio  G1 degrees   ratio\n";
         }
         column(std::to_string(row.level), 5), column(brief(row.measured.deviation), 9), column(ratio(row.ratio_deviation), 6);
         column(brief(row.measured.normal_deviation), 12), column(ratio(row.ratio_normal), 6);
@@ -118,7 +128,7 @@ void print_loop(const LimitResult& result, std::ostream& out) {
     if (rows.empty()) return;
     out << "\nRegular faces, triangular Coons surfaces on the limit's curves: deviation over the triangle of 2^-level about the centre (sampled)\n"
         << "  edges and their cross derivatives: " << in_eps(result.irregular.loop_edges, result.regular.size) << "\n"
-        << "  method           expected ratio | level: deviation (observed ratio)\n";
+        << "  method           expected ratio | level: deviation (observed ratio, of the level before to this one)\n";
     for (std::size_t k = 0; k < rows.size(); ++k) {
         if (rows[k].level == 0) out << (k ? "\n  " : "  ") << std::left << std::setw(17) << rows[k].method << std::right << std::setw(14) << (1 << rows[k].order) << " |";
         out << " " << rows[k].level << ": " << brief(rows[k].deviation, 2);
@@ -147,19 +157,31 @@ const std::vector<std::string>& limit_schemes() {
     return names;
 }
 
+std::optional<bool> LimitResult::identity() const {
+    if (!any_identity(*this) || regular.hidden_by_rounding()) return {};
+    return regular.identity_holds() && irregular.identities_hold(regular.tolerance);
+}
+std::string LimitResult::rounding_note() const {
+    return "the cage reaches " + brief(regular.size) + " from the origin, where 200 eps max|P| is " + brief(regular.tolerance) + ", more than 1e-6 of its diagonal " +
+           brief(regular.diagonal) + ": nothing measured says anything; move it to the origin";
+}
+bool LimitResult::something_compared() const {
+    return any_identity(*this) || !irregular.by_level.empty() || !irregular.loop.empty();
+}
+
 std::string limit_json(const LimitResult& result) {
     const LimitReport& r = result.regular;
     const LimitLevels& i = result.irregular;
-    const bool identity = r.deviation || i.subcells.deviation || i.loop_edges;
+    const auto identity = result.identity();
     std::ostringstream out;
     out << "{\"scheme\": \"" << limit_schemes()[static_cast<int>(r.scheme)] << "\", \"faces\": " << r.faces << ", \"regular\": " << r.regular
         << ", \"irregular\": " << r.irregular << ", \"without_limit\": " << r.without_limit << ",\n"
-        << " \"max_deviation\": {\"regular\": " << json_text(r.deviation) << ", \"irregular\": " << json_text(larger(i.worst.deviation, i.subcells.deviation)) << "},\n"
+        << " \"max_deviation\": {\"regular\": " << json_text(deviation_of_regular(result)) << ", \"irregular\": " << json_text(larger(i.worst.deviation, i.subcells.deviation)) << "},\n"
         << " \"max_normal_degrees\": {\"regular\": " << json_text(r.normal_degrees) << ", \"irregular\": " << json_text(i.worst.normal_degrees) << "},\n"
         << " \"max_network_gap\": " << json_text(r.network_gap) << ",\n"
         << " \"control\": {\"bilinear_coons\": " << json_text(r.bilinear_coons) << "},\n"
         << " \"max_abs\": " << json_text(r.size) << ", \"tolerance\": " << json_text(r.tolerance)
-        << ", \"identity\": " << (identity ? (result.identities_hold() ? "true" : "false") : "null") << ",\n";
+        << ", \"identity\": " << (identity ? (*identity ? "true" : "false") : "null") << ",\n";
     if (r.worst_face >= 0) out << " \"worst\": {\"face\": " << r.worst_face << ", \"at\": [" << json_text(r.worst_u) << ", " << json_text(r.worst_v) << "]},\n";
     out << " \"edges\": {" << json_edges(larger(r.edges.g1_degrees, i.worst.g1_degrees), larger(r.edges.c1, i.worst.c1)) << ",\n  \"regular\": {"
         << json_edges(r.edges.g1_degrees, r.edges.c1) << ", \"max_c0\": " << json_text(r.edges.c0) << ", \"compared\": " << r.edges.compared

@@ -1,6 +1,7 @@
 // commands/limit_report.h -- what `isoparm limit` found, as text and as JSON.
 #pragma once
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,11 @@ struct LimitResult {
     LimitLevels irregular;
     std::vector<UncomparedFace> subcells_only;  // faces whose extraordinary vertices, if any, have no tangents
 
-    bool identities_hold() const { return regular.identity_holds() && irregular.identities_hold(regular.tolerance); }
-    bool something_compared() const { return regular.deviation || irregular.subcells.cells > 0 || !irregular.by_level.empty() || !irregular.loop.empty(); }
+    /// Is everything equal that must be? Nothing where there is no such thing, or rounding hides it.
+    std::optional<bool> identity() const;
+    bool something_compared() const;
+    /// For a reader, where regular.hidden_by_rounding().
+    std::string rounding_note() const;
 };
 
 std::string limit_json(const LimitResult& result);

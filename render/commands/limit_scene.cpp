@@ -38,7 +38,7 @@ void print(const std::string& surface, const Reports& reports) {
     for (const SplineReport& r : reports) {
         std::cout << "\n  " << r.name << "\n";
         if (!r.refused.empty()) std::cout << "    not compared: " << r.refused << "\n";
-        if (!r.levels.empty()) std::cout << "      cells  deviation   ratio  normals, degrees\n";
+        if (!r.levels.empty()) std::cout << "      cells  deviation   ratio  normals, degrees   (ratio: of the deviation before to this one)\n";
         for (const SplineLevel& l : r.levels) {
             std::cout << "    " << std::setw(7) << std::to_string(l.m) + "x" + std::to_string(l.n) << std::setprecision(3) << std::setw(11) << l.deviation << std::setw(8);
             if (l.ratio) std::cout << *l.ratio;
@@ -74,6 +74,8 @@ void write_files(const std::string& folder, const std::string& text, const Repor
 
 int run_limit_scene(const Options& options) {
     if (!options.words().empty()) options.fail("found " + options.words().front() + " beside --scene, expected a cage or a scene, not both");
+    for (const char* flag : {"--scheme", "--samples", "--levels"})
+        if (options.has(flag)) options.fail("found " + std::string(flag) + " beside --scene, expected it with a cage only; leave it out");
     const std::string path = *options.value("--scene"), name = options.required("--surface", "name the surface of the scene to compare");
     const Scene scene = options.scene_at(path);
     const Composite patches = find_patches(scene, name);
