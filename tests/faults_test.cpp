@@ -194,6 +194,20 @@ TEST_F(Faults, OfKillsLeaveOneFile) {
     }
     EXPECT_GT(killed, 0);
 }
+/// As on a file system without O_TMPFILE: the first opening for writing fails, and the temporary has a name from the start.
+TEST_F(Faults, OfSignalsRemoveTemporariesWithNames) {
+    const std::string mesh = "tessellate in/coons.json --tolerance 1e-4 -o out/m.obj", unnamed_fails = "env LD_PRELOAD=" ISOPARM_FAULTS " ISOPARM_FAULT=open ISOPARM_FAULT_AT=1 ISOPARM_FAULT_ONCE=1 ";
+    isoparm(mesh);
+    const Files whole = files(), old{{"m.obj", "old"}};
+    int stopped = 0;
+    for (int k = 1; k <= 12; ++k) {
+        restore(old);
+        stopped += isoparm(mesh, unnamed_fails + "timeout -s TERM 0." + std::to_string(1000 + 7919 * k % 1000).substr(1)).code != 0;
+        const Files found = files();
+        EXPECT_TRUE(found == old || found == whole) << found.size() << " files, stopped at " << k;
+    }
+    EXPECT_GT(stopped, 0);
+}
 TEST_F(Faults, OfManyRunsToOneFile) {
     const std::string one = "tessellate in/coons.json --tolerance 1e-3 --threads 1 --quiet -o out/m.ply";
     isoparm(one);
