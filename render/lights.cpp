@@ -18,7 +18,7 @@ double height_of_cap(double sine) { return sine * sine / (1 + std::sqrt(std::max
 
 /// Even over the cone about `axis` whose cap has that height.
 Point in_cone(const Point& axis, double height, const Vec2& s) {
-    const double z = 1 - s.x * height, r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * kPi * s.y;
+    const double z = 1 - s.x * height, r = std::sqrt(s.x * height * (2 - s.x * height)), phi = 2 * kPi * s.y;
     return normalized(LocalFrame(axis).to_world({r * std::cos(phi), r * std::sin(phi), z}));
 }
 
@@ -130,7 +130,7 @@ Lights::Color Lights::met(const Ray& ray, double end, double chosen) const {
         const double other = chosen > 0 ? density(l, ray.origin, ray.direction, m.distance) / double(sampled_.size()) : 0;
         sum += (chosen > 0 ? chosen * chosen / (chosen * chosen + other * other) : 1) * m.radiance;
     }
-    return std::isfinite(end) ? sum : sum + sky(ray.direction);
+    return sum;
 }
 
 Lights::Color Lights::sky(const Point& direction) const {

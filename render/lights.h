@@ -20,10 +20,10 @@ public:
     /// None that shines on `from`: radiance 0. `pick` in [0,1) chooses the light.
     Sample sample(const Point& from, double pick, const Vec2& s) const;
 
-    /// Light that comes along a ray from lights that it meets before `end` (infinite: the sky's, too). `density` is that with which the ray
+    /// Light that comes along a ray from lights but the sky that it meets before `end`. `density` is that with which the ray
     /// was chosen over solid angle: what sample() finds as well counts in part (Veach's power heuristic); 0: it does not.
     Color met(const Ray& ray, double end, double density) const;
-    /// The sky's light alone.
+    /// The sky's light.
     Color sky(const Point& direction) const;
 
 private:

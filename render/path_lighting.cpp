@@ -23,10 +23,10 @@ Color reflectance(const Surfel& s) { return (1 - s.ink_cover) * s.color + s.ink_
 struct PathLighting::Path {
     Surfel at;
     Color throughput = kWhite, light;
+    Color to_lamps;        // throughput for lights but the sky: without caustics, only what is scattered evenly
     Ray ray;             // from `at` on
     double density = 0;  // of its direction; 0: the only one
-    bool spread = false;   // was, before the last point
-    bool caustic = false;  // was, and is thrown by a mirror or through glass now
+    bool spread = false;   // was scattered evenly at some point
     bool ended = false;
 };
 
@@ -104,7 +104,11 @@ void PathLighting::scatter(Batch& batch) const {
         Path& p = batch.paths[i];
         const LocalFrame frame(p.at.normal);
         const Bsdf bsdf(*p.at.material, reflectance(p.at), !p.at.front);
-        const Bsdf::Sample s = bsdf.sample(frame.to_local(p.at.view), batch.random(p, kChoices).y, batch.random(p, kDirection));
+        const Point out = frame.to_local(p.at.view);
+        const Bsdf::Sample s = bsdf.sample(out, batch.random(p, kChoices).y, batch.random(p, kDirection));
+        const bool caustic = p.spread && !settings_.caustics;  // what the coat, metal or glass would throw now
+        const Color even = s.density > 0 && !bsdf.specular() ? bsdf.spread(out, s.direction) / s.density : Color{};
+        p.to_lamps = product(p.throughput, caustic ? even : s.weight);
         p.throughput = product(p.throughput, s.weight);
         const double most = std::max({p.throughput.x, p.throughput.y, p.throughput.z});
         p.ended = !(most > 0);
@@ -112,11 +116,10 @@ void PathLighting::scatter(Batch& batch) const {
         if (batch.bounce >= kSure) {  // the lighter a path, the likelier it ends; what goes on weighs more
             const double goes_on = std::min(1.0, most);
             if (batch.random(p, kChances).x >= goes_on) p.ended = true;
-            p.throughput = p.throughput / goes_on;
+            p.throughput = p.throughput / goes_on, p.to_lamps = p.to_lamps / goes_on;
         }
         p.ray = {s.direction.z > 0 ? p.at.origin : p.at.beneath, normalized(frame.to_world(s.direction))};
         p.density = bsdf.specular() ? 0 : s.density;
-        p.caustic = p.spread && !s.spread;
         p.spread = p.spread || s.spread;
     }
 }
@@ -144,8 +147,8 @@ void PathLighting::follow(Batch& batch) const {
     for (int i = 0; i < batch.n; ++i) {
         Path& p = batch.paths[i];
         p.ended = !hits[i].found();
-        if (settings_.caustics || !p.caustic) p.light += product(p.throughput, lights_.met(p.ray, hits[i].distance, p.density));
-        else if (p.ended) p.light += product(p.throughput, lights_.sky(p.ray.direction));
+        p.light += product(p.to_lamps, lights_.met(p.ray, hits[i].distance, p.density));
+        if (p.ended) p.light += product(p.throughput, lights_.sky(p.ray.direction));
         if (!p.ended) who[count] = i, met_by[count] = p.ray, met[count++] = hits[i];
     }
     Surfel surfels[EmbreeScene::packet];

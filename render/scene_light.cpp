@@ -25,7 +25,7 @@ Color read_power(const Json& j, const SceneValues& values, const std::string& wh
 
 Point read_direction(const Json& j, const SceneValues& values) {
     const Point d = values.point(j);
-    if (!(length(d) > 0)) j.expected("a direction that is not zero");
+    if (!(length(d) > 0 && std::isfinite(length(d)))) j.expected("a direction that is not zero and has a finite length");
     return normalized(d);
 }
 

@@ -179,6 +179,17 @@ TEST(Light, FurnacesAreEven) {
     for (int y = 0; y < part.height; ++y)
         for (int x = 0; x < part.width; ++x) EXPECT_EQ(part.at(x, y)[1], whole.at(x + 7, y + 3)[1]);
 }
+TEST(Light, DarkLightsChangeNothing) {
+    // A floor that is lit by way of a shiny wall only, without caustics: what both ways to find a light share must not depend on how many there are.
+    const std::string wall = R"(, "wall": {"type": "bilinear", "points": [[-9,1,0], [-9,1,9], [9,1,0], [9,1,9]]})";
+    const std::string objects = kGrey + R"(, {"surface": "wall", "color": [0.3,0.3,0.3], "back": [0.3,0.3,0.3], "material": {"type": "plastic", "roughness": 0.7, "ior": 2.5}})";
+    const std::string light = R"({"type": "rectangle", "corner": [-2, 0.5, 0.02], "edges": [[0, 0, 4], [4, 0, 0]], "radiance": 6})";
+    std::string dark;
+    for (int k = 0; k < 9; ++k) dark += R"(, {"type": "sphere", "center": [0, 0, -50], "radius": 1, "radiance": 0})";
+    const double alone = seen(objects, light, 16384, wall), among = seen(objects, light + dark, 16384, wall);
+    EXPECT_GT(alone, 0.005);
+    EXPECT_NEAR(among, alone, 0.03 * alone);
+}
 TEST(Light, CausticsAreFollowedWhereTheyAreWanted) {
     // A white floor, and a mirror upright beside it that throws the light of a small sphere onto it.
     const std::string wall = R"(, "wall": {"type": "bilinear", "points": [[-9,1,0], [-9,1,9], [9,1,0], [9,1,9]]})";
