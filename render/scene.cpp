@@ -59,6 +59,8 @@ void set_points(std::vector<SceneObject>& objects, double pixels) {
         set(o.isolines.width);
         set_line(o.line);
         set_line(o.outline.line);
+        set(o.comb.width);
+        set(o.jumps.width);
         if (o.label.size) set(*o.label.size);
         for (Label& l : o.net_labels)
             if (l.size) set(*l.size);

@@ -92,7 +92,7 @@ struct ColorBy {
 struct JumpHeat {
     enum class Of { none, g1, g2 } of = Of::none;  // the angle of the normals in degrees; the normal curvature across the edge
     std::optional<double> top;                     // of the colours, which begin at 0; default: the largest, made round
-    double width = 4;                              // pixels
+    Extent width = 4;                              // pixels
     bool legend = false;
 };
 
@@ -100,7 +100,7 @@ struct JumpHeat {
 struct Comb {
     int teeth = 0;               // 0: no comb
     std::optional<double> scale; // scene units squared; default: the longest is an eighth of the scene's size
-    double width = 1;            // pixels
+    Extent width = 1;            // pixels
     std::optional<Color> color;
 };
 
