@@ -27,4 +27,11 @@ inline std::string json_text(const Point& p) {
 }
 template <class T> std::string json_text(const std::optional<T>& x) { return x ? json_text(*x) : "null"; }
 
+/// An array of what f makes of each element, one a line.
+template <class List, class F> std::string json_list(const List& list, const F& f) {
+    std::string text;
+    for (const auto& x : list) text += (text.empty() ? "\n  " : ",\n  ") + f(x);
+    return "[" + text + "]";
+}
+
 }  // namespace isoparm

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "curves/bezier.h"
+#include "curves/lane_by_lane.h"
 #include "error.h"
 #include "patches/bbg.h"
 #include "patches/coons.h"
@@ -44,14 +45,7 @@ public:
         if (order > 0) out[1] = along(x, to_ - from_);
         for (int k = 2; k <= order; ++k) out[k] = {kNaN, kNaN, kNaN};
     }
-    void taylor(const Pack& t, int order, Vec3<Pack>* out) const override {
-        Vec3<double> one[4];
-        for (int i = 0; i < Pack::lanes; ++i) {
-            taylor(t[i], order, one);
-            for (int k = 0; k <= order; ++k)
-                for (int axis = 0; axis < 3; ++axis) out[k][axis].set(i, one[k][axis]);
-        }
-    }
+    void taylor(const Pack& t, int order, Vec3<Pack>* out) const override { lane_by_lane(*this, t, order, out); }
     void taylor(const Interval&, int order, Vec3<Interval>* out) const override {
         for (int k = 0; k <= order; ++k) out[k] = {Interval::all(), Interval::all(), Interval::all()};
     }

@@ -60,8 +60,9 @@ Bsdf::Bsdf(const Material& material, const Color& color, bool inside)
     : material_(material), color_(color), inside_(inside), alpha_(std::max(1e-3, material.roughness * material.roughness)) {
     if (material.kind == Material::Kind::metal) coat_share_ = 1;
     if (material.kind == Material::Kind::plastic) {
-        const double coat = mean_fresnel(material.ior) + 0.1, base = 0.9 * max_of(color);
+        const double mean = mean_fresnel(material.ior), coat = mean + 0.1, base = 0.9 * max_of(color);
         coat_share_ = coat / (coat + base);
+        kept_ = 1 - (1 - mean) / (material.ior * material.ior);
     }
 }
 
@@ -77,9 +78,9 @@ Color Bsdf::base(const Point& out, const Point& in) const {
     if (material_.kind == Material::Kind::metal) return {};
     if (material_.kind == Material::Kind::diffuse) return (in.z / kPi) * color_;
     // What enters through the coat, is scattered below it, partly thrown back by the coat from below, and leaves.
-    const double ior = material_.ior, kept = 1 - (1 - mean_fresnel(ior)) / (ior * ior);
+    const double ior = material_.ior;
     const double through = (1 - fresnel(out.z, ior)) * (1 - fresnel(in.z, ior)) / (ior * ior);
-    const auto one = [&](double c) { return c / (1 - c * kept); };
+    const auto one = [&](double c) { return c / (1 - c * kept_); };
     return (through * in.z / kPi) * Color{one(color_.x), one(color_.y), one(color_.z)};
 }
 

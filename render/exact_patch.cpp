@@ -6,6 +6,7 @@
 #include <span>
 
 #include "error.h"
+#include "local_frame.h"
 
 namespace isoparm {
 namespace {
@@ -38,10 +39,8 @@ Interval part_of(const Interval& t, bool upper) { return upper ? Interval(mid(t)
 }  // namespace
 
 RayPlanes::RayPlanes(const Ray& ray) : origin(ray.origin), direction(ray.direction) {
-    const Point& d = direction;  // Duff et al., JCGT 2017
-    const double s = std::copysign(1.0, d.z), a = -1 / (s + d.z), b = d.x * d.y * a;
-    n1 = {1 + s * d.x * d.x * a, s * b, -s * d.x};
-    n2 = {b, s + d.y * d.y * a, -d.y};
+    const LocalFrame frame(direction);
+    n1 = frame.x, n2 = frame.y;
 }
 
 // ---- leaves ---------------------------------------------------------------------------------------------------------

@@ -10,8 +10,6 @@ constexpr double kStep = 1.5;      // pixels between points
 constexpr double kShort = 2;       // shorter runs, pixels, are noise of the depth test
 constexpr double kFlat = 0.02;     // pixels by which a line may be off when points are left out
 
-double apart(const Vec2& a, const Vec2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
-
 /// From a to b as straight as makes no difference? Then the points between are not needed.
 bool straight(const std::vector<Vec2>& p, std::size_t a, std::size_t b) {
     const double x = p[b].x - p[a].x, y = p[b].y - p[a].y, length = std::hypot(x, y);

@@ -1,5 +1,6 @@
 // flat_lines.h -- curves as lines of constant width on the picture, cut where surfaces hide them.
 #pragma once
+#include <cmath>
 #include <functional>
 
 #include "drawing.h"
@@ -17,6 +18,9 @@ struct LineLook {
 
 /// The curve in steps of about a pixel and a half, as far as it is in front of the camera.
 std::vector<Point> fine_points(const std::vector<CubicPiece>& pieces, const Camera& camera);
+
+/// Pixels between two points of the picture.
+inline double apart(const Vec2& a, const Vec2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 /// Parameters from `from` to `to` at which points of a curve follow each other within about a pixel and a half.
 std::vector<double> fine_parameters(const std::function<Point(double)>& curve, double from, double to, const Camera& camera);

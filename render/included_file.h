@@ -10,4 +10,8 @@ namespace isoparm {
 /// below it, or no file at all (reading it tells). Whoever sends a scene must not read others' files by it.
 std::string included_file(const Json& j, const std::string& name);
 
+struct IncludedFile {
+    std::string text, path;
+};
+
 }  // namespace isoparm

@@ -90,7 +90,6 @@ private:
         }
         return static_cast<int>(std::clamp(longest / kCell, double(kLeastCells), double(kMostCells)));
     }
-    static double apart(const Vec2& a, const Vec2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
     /// Where on the way from a to b, whose sides differ, the surface turns.
     Vec2 turn(Vec2 a, Vec2 b) const {

@@ -11,6 +11,8 @@ namespace isoparm {
 
 inline double linear_from_srgb(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
 inline double srgb_from_linear(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
+/// 0 to 255.
+inline int srgb_byte(double linear) { return static_cast<int>(std::lround(255 * std::clamp(srgb_from_linear(std::max(0.0, linear)), 0.0, 1.0))); }
 inline Color linear_from_srgb(double r, double g, double b) {
     return {linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b)};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 #include "io/atomic_file.h"
@@ -74,6 +75,15 @@ void set_opacities(PaperFigure& figure) {
 }
 
 }  // namespace
+
+std::string decimal(double x, const char* format) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, x);
+    std::string s = text;
+    s.erase(s.find_last_not_of('0') + 1);
+    if (s.back() == '.') s.pop_back();
+    return s == "-0" ? "0" : s;
+}
 
 bool is_paper(const std::string& path) {
     const std::string e = extension_of(path);

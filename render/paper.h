@@ -33,6 +33,9 @@ void write_paper(const std::string& path, PaperFigure figure, const Metadata& me
 /// Of the white rim of a text whose opacity is for sRGB: about what halo_opacity() makes of light.
 inline double printed_halo(double of_text) { return 0.85 * of_text; }
 
+/// As the format has it, without zeros at the end.
+std::string decimal(double x, const char* format = "%.3f");
+
 // What write_paper() writes, once the opacities are right.
 std::string svg_text(const PaperFigure& figure);
 /// `raster`: the name of its file, as \includegraphics finds it.

@@ -21,30 +21,23 @@ std::string formatted(const char* format, ...) {
     va_end(arguments);
     return text;
 }
-std::string number(double x, const char* format = "%.3f") {
-    std::string s = formatted(format, x);
-    s.erase(s.find_last_not_of('0') + 1);
-    if (s.back() == '.') s.pop_back();
-    return s == "-0" ? "0" : s;
-}
 
 std::string color_of(const Color& c) {
-    const auto byte = [](double x) { return static_cast<int>(std::lround(255 * std::clamp(srgb_from_linear(std::max(0.0, x)), 0.0, 1.0))); };
-    return formatted("#%02x%02x%02x", byte(c.x), byte(c.y), byte(c.z));
+    return formatted("#%02x%02x%02x", srgb_byte(c.x), srgb_byte(c.y), srgb_byte(c.z));
 }
-std::string with_opacity(const char* what, double opacity) { return opacity >= 1 ? "" : formatted(" %s=\"%s\"", what, number(opacity).c_str()); }
+std::string with_opacity(const char* what, double opacity) { return opacity >= 1 ? "" : formatted(" %s=\"%s\"", what, decimal(opacity).c_str()); }
 std::string path_of(const std::vector<Vec2>& points) {
     std::string d;
-    for (const Vec2& p : points) d += (d.empty() ? "M" : "L") + number(p.x, "%.2f") + " " + number(p.y, "%.2f");
+    for (const Vec2& p : points) d += (d.empty() ? "M" : "L") + decimal(p.x, "%.2f") + " " + decimal(p.y, "%.2f");
     return d;
 }
 
 void add(const Polyline& line, const DrawingItem& item, bool, std::string& out) {
     std::string dash;
-    for (const double d : line.dash) dash += (dash.empty() ? "" : " ") + number(d);
+    for (const double d : line.dash) dash += (dash.empty() ? "" : " ") + decimal(d);
     std::string d = path_of(line.points);
     for (const auto& other : line.more) d += path_of(other);
-    out += "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + color_of(item.color) + "\" stroke-width=\"" + number(line.width) + "\" stroke-linecap=\"" +
+    out += "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + color_of(item.color) + "\" stroke-width=\"" + decimal(line.width) + "\" stroke-linecap=\"" +
            (line.round ? "round" : "butt") + "\" stroke-linejoin=\"round\"" + (dash.empty() ? "" : " stroke-dasharray=\"" + dash + "\"") +
            with_opacity("stroke-opacity", item.opacity) + "/>\n";
 }
@@ -54,10 +47,10 @@ void add(const Filled& area, const DrawingItem& item, bool, std::string& out) {
 
 std::string halo_of(const Text& text, double opacity) {
     if (!(text.halo > 0)) return "";
-    return " stroke=\"#ffffff\" stroke-width=\"" + number(2 * text.halo) + "\" stroke-linejoin=\"round\" paint-order=\"stroke\"" + with_opacity("stroke-opacity", printed_halo(opacity));
+    return " stroke=\"#ffffff\" stroke-width=\"" + decimal(2 * text.halo) + "\" stroke-linejoin=\"round\" paint-order=\"stroke\"" + with_opacity("stroke-opacity", printed_halo(opacity));
 }
 std::string anchor_of(const Text& text) {
-    return text.anchor ? " data-anchor=\"" + number(text.anchor->x) + " " + number(text.anchor->y) + "\"" : "";
+    return text.anchor ? " data-anchor=\"" + decimal(text.anchor->x) + " " + decimal(text.anchor->y) + "\"" : "";
 }
 void add(const Text& text, const DrawingItem& item, bool outlines, std::string& out) {
     const std::string look = anchor_of(text) + " fill=\"" + color_of(item.color) + "\"" + with_opacity("fill-opacity", item.opacity) + halo_of(text, item.opacity);
@@ -67,10 +60,10 @@ void add(const Text& text, const DrawingItem& item, bool outlines, std::string& 
         out += "<path aria-label=\"" + escaped(plain) + "\"" + look + " d=\"" + outline_path(text) + "\"/>\n";
         return;
     }
-    const std::string place = number(text.at.x) + (text.turned ? " " : ",") + number(text.at.y);
+    const std::string place = decimal(text.at.x) + (text.turned ? " " : ",") + decimal(text.at.y);
     out += "<text transform=\"translate(" + place + ")" + (text.turned ? " rotate(-90)" : "") + "\"" + look + ">";
     for (const PlacedRun& r : placed_runs(text.text, text.size)) {
-        out += "<tspan x=\"" + number(r.x) + "\" y=\"" + number(r.y) + "\" font-size=\"" + number(text.size * r.run->scale) + "\"" + (r.run->italic ? " font-style=\"italic\"" : "") +
+        out += "<tspan x=\"" + decimal(r.x) + "\" y=\"" + decimal(r.y) + "\" font-size=\"" + decimal(text.size * r.run->scale) + "\"" + (r.run->italic ? " font-style=\"italic\"" : "") +
                (r.run->bold ? " font-weight=\"bold\"" : "") + ">" + escaped(r.run->text) + "</tspan>";
     }
     out += "</text>\n";
@@ -84,7 +77,7 @@ std::string svg_text(const PaperFigure& figure) {
     std::string out = formatted(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"%smm\" height=\"%smm\" "
         "viewBox=\"0 0 %d %d\">\n",
-        number(width * millimetres).c_str(), number(height * millimetres).c_str(), width, height);
+        decimal(width * millimetres).c_str(), decimal(height * millimetres).c_str(), width, height);
     out += "<title>" + escaped(figure.title) + "</title>\n";
     out += formatted("<image width=\"%d\" height=\"%d\" preserveAspectRatio=\"none\" xlink:href=\"data:image/png;base64,", width, height) + base64(png_bytes(figure.raster)) + "\"/>\n";
     for (std::size_t i = 0; i < figure.parts.size(); ++i) {

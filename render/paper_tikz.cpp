@@ -10,16 +10,8 @@
 namespace isoparm {
 namespace {
 
-std::string number(double x, const char* format = "%.3f") {
-    char text[64];
-    std::snprintf(text, sizeof text, format, x);
-    std::string s = text;
-    s.erase(s.find_last_not_of('0') + 1);
-    if (s.back() == '.') s.pop_back();
-    return s == "-0" ? "0" : s;
-}
 std::string color_of(const Color& c) {
-    const auto byte = [](double x) { return std::to_string(std::lround(255 * std::clamp(srgb_from_linear(std::max(0.0, x)), 0.0, 1.0))); };
+    const auto byte = [](double x) { return std::to_string(srgb_byte(x)); };
     return "{rgb,255:red," + byte(c.x) + ";green," + byte(c.y) + ";blue," + byte(c.z) + "}";
 }
 
@@ -38,10 +30,10 @@ public:
     }
 
 private:
-    std::string in_points(double pixels) const { return number(pixels / figure_.pixels_per_point) + "bp"; }
+    std::string in_points(double pixels) const { return decimal(pixels / figure_.pixels_per_point) + "bp"; }
     /// In points: numbers of TeX end at 16383.
-    std::string at(const Vec2& p) const { return "(" + number(p.x / figure_.pixels_per_point) + "," + number(p.y / figure_.pixels_per_point) + ")"; }
-    static std::string opacity(const DrawingItem& item) { return item.opacity < 1 ? ",opacity=" + number(item.opacity) : ""; }
+    std::string at(const Vec2& p) const { return "(" + decimal(p.x / figure_.pixels_per_point) + "," + decimal(p.y / figure_.pixels_per_point) + ")"; }
+    static std::string opacity(const DrawingItem& item) { return item.opacity < 1 ? ",opacity=" + decimal(item.opacity) : ""; }
 
     void add(const DrawnPart& part) {
         if (part.drawing.empty()) return;
@@ -77,7 +69,7 @@ private:
         const Vec2 base = text.turned ? Vec2{text.at.x, text.at.y - middle} : Vec2{text.at.x + middle, text.at.y};
         const double points = text.size / figure_.pixels_per_point;
         out_ += "\\node[inner sep=0pt,outer sep=0pt,anchor=base" + std::string(text.turned ? ",rotate=90" : "") + ",text=" + color_of(item.color) + opacity(item) + ",font=\\fontsize{" +
-                number(points, "%.2f") + "bp}{" + number(1.2 * points, "%.2f") + "bp}\\selectfont] at " + at(base) + " {" + tex_of(text.text) + "};\n";
+                decimal(points, "%.2f") + "bp}{" + decimal(1.2 * points, "%.2f") + "bp}\\selectfont] at " + at(base) + " {" + tex_of(text.text) + "};\n";
     }
 
     const PaperFigure& figure_;

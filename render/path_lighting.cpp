@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "bsdf.h"
 #include "surfel.h"
@@ -23,10 +22,10 @@ Color reflectance(const Surfel& s) { return (1 - s.ink_cover) * s.color + s.ink_
 struct PathLighting::Path {
     Surfel at;
     Color throughput = kWhite, light;
-    Color to_lamps;        // throughput for lights but the sky: without caustics, only what is scattered evenly
-    Ray ray;             // from `at` on
-    double density = 0;  // of its direction; 0: the only one
-    bool spread = false;   // was scattered evenly at some point
+    Color to_lamps;       // throughput for lights but the sky: without caustics, only what is scattered evenly
+    Ray ray;              // from `at` on
+    double density = 0;   // of its direction; 0: the only one
+    bool spread = false;  // was scattered evenly at some point
     bool ended = false;
 };
 

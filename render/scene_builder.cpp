@@ -137,9 +137,14 @@ const std::vector<FileCurve>& SceneBuilder::curves_of_file(const Json& definitio
 }
 
 IncludedFile SceneBuilder::included(const Json& name, const std::string& what) {
-    IncludedFile file = read_included(name, values_, what);
-    included_.insert(file.path);
-    return file;
+    const std::string path = included_file(name, values_.text(name, "the name of " + what + ", relative to the scene"));
+    try {
+        IncludedFile file{read_text_file(path), path};
+        included_.insert(path);
+        return file;
+    } catch (const Error& e) {
+        name.fail("found a file that cannot be used, expected " + what + ": " + e.what());
+    }
 }
 
 std::vector<Curve> SceneBuilder::curves(const Json& list, std::size_t least, std::size_t most) {

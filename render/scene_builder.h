@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "included_file.h"
 #include "io/curve_file.h"
 #include "json.h"
 #include "patches/control_net.h"
 #include "scene.h"
-#include "scene_include.h"
 #include "scene_values.h"
 
 namespace isoparm {
@@ -52,7 +52,7 @@ public:
     /// Of the file that the key "path" of a definition names; read once.
     const std::vector<FileCurve>& curves_of_file(const Json& definition);
 
-    /// The file that `name` names, as read_included() reads it.
+    /// The whole of the file that `name` names, found by included_file(); `what`: "a BV file". Throws LocatedError.
     IncludedFile included(const Json& name, const std::string& what);
     /// Paths of all of them.
     const std::set<std::string>& included_paths() const { return included_; }

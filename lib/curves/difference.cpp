@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "curves/lane_by_lane.h"
 #include "curves/quotient.h"
 
 namespace isoparm {
@@ -17,16 +18,6 @@ Interval unknown(const Interval&) { return Interval::all(); }
 constexpr int kMost = 8;  // orders that are asked for here
 /// Taylor coefficients that a curve knows. Derivatives of derivatives of Bezier curves need more than the 3 that every curve has.
 int known_order(const Curve& c) { return c.bezier() ? kMost : 3; }
-
-/// What a curve must answer on packs, by its answers on numbers.
-template <class C> void lane_by_lane(const C& c, const Pack& t, int order, Vec3<Pack>* out) {
-    Vec3<double> one[4];
-    for (int i = 0; i < Pack::lanes; ++i) {
-        c.taylor(t[i], order, one);
-        for (int k = 0; k <= order; ++k)
-            for (int axis = 0; axis < 3; ++axis) out[k][axis].set(i, one[k][axis]);
-    }
-}
 
 class Derivative final : public Curve::Concept {
 public:

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "curves/lane_by_lane.h"
 #include "error.h"
 
 namespace isoparm {
@@ -25,14 +26,7 @@ public:
         const auto e = enclose(Interval(t));
         for (int axis = 0; axis < 3; ++axis) out[3][axis] = mid(e.over[axis].coefficient(along_ == Along::u ? 3 : 0, along_ == Along::u ? 0 : 3));
     }
-    void taylor(const Pack& t, int order, Vec3<Pack>* out) const override {
-        Vec3<double> one[4];
-        for (int i = 0; i < Pack::lanes; ++i) {
-            taylor(t[i], order, one);
-            for (int k = 0; k <= order; ++k)
-                for (int axis = 0; axis < 3; ++axis) out[k][axis].set(i, one[k][axis]);
-        }
-    }
+    void taylor(const Pack& t, int order, Vec3<Pack>* out) const override { lane_by_lane(*this, t, order, out); }
     void taylor(const Interval& t, int order, Vec3<Interval>* out) const override { store(enclose(t).over, order, out); }
 
 private:

@@ -135,12 +135,6 @@ std::string json_of(const Report& r, const Joint& j) {
     return text + "], \"kind\": " + json_text(kKinds[int(j.kind)]) + ", \"in_step\": " + (j.affine ? "true" : "false") + "}";
 }
 
-template <class List, class F> std::string json_list(const List& list, F f) {
-    std::string text;
-    for (const auto& x : list) text += (text.empty() ? "\n  " : ",\n  ") + f(x);
-    return "[" + text + "]";
-}
-
 std::string json_of(const Report& r, const Examined& e) {
     std::string conditions;
     const auto add = [&](const std::string& text) { conditions += (conditions.empty() ? "\n    {" : ",\n    {") + text + "}"; };

@@ -36,11 +36,6 @@ std::string json(const LoopLevel& row) {
     return "{\"method\": " + json_text(row.method) + ", \"level\": " + std::to_string(row.level) + ", \"deviation\": " + json_text(row.deviation) +
            ", \"ratio\": " + json_text(row.ratio) + ", \"expected\": " + std::to_string(1 << row.order) + "}";
 }
-template <class List, class F> std::string json_list(const List& list, const F& item) {
-    std::string text = "[";
-    for (const auto& x : list) text.append(text.size() > 1 ? ",\n  " : "\n  ").append(item(x));
-    return text + "]";
-}
 std::string json_edges(const Measure& g1, const Measure& c1) { return "\"max_g1_degrees\": " + json_text(g1) + ", \"max_c1\": " + json_text(c1); }
 
 /// Three digits are enough for a reader; --json has them all.
