@@ -29,7 +29,7 @@ Scene surfaces_only(const std::string& name) {
 /// All that is made before time is taken.
 struct View {
     Scene scene;
-    TracedScene traced;
+    TracedScene traced, exact;
     Camera camera;
     std::vector<Ray> rays;  // the samples of one pixel after those of another, as the renderer traces them
     std::unique_ptr<BareEmbree> robust, fast;
@@ -38,6 +38,7 @@ struct View {
         : scene(surfaces_only(name)), camera(make_camera(scene.camera, drawn_points(scene), kWidth, kHeight)) {
         const Bounds box = bounding_box(scene);
         traced = build_traced_scene(scene, kRelative * box.diagonal(), {});
+        exact = build_traced_scene(scene, kRelative * box.diagonal(), {}, true);
         const PixelFilter filter;
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) {
@@ -54,12 +55,13 @@ struct View {
     }
 
     /// use(rays, hits, n) for the n rays of each packet that hit; their number.
-    template <class Use> std::size_t intersect(Use use) const {
+    template <class Use> std::size_t intersect(Use use) const { return intersect(traced, use); }
+    template <class Use> std::size_t intersect(const TracedScene& what, Use use) const {
         Hit hits[EmbreeScene::packet];
         Ray hitting[EmbreeScene::packet];
         std::size_t found = 0;
         for (std::size_t k = 0; k < rays.size(); k += EmbreeScene::packet) {
-            traced.embree->intersect(&rays[k], EmbreeScene::packet, hits);
+            what.embree->intersect(&rays[k], EmbreeScene::packet, hits);
             int n = 0;
             for (int i = 0; i < EmbreeScene::packet; ++i)
                 if (hits[i].found()) hitting[n] = rays[k + i], hits[n++] = hits[i];
@@ -73,6 +75,8 @@ struct View {
     void compare() const {
         const double ours = double(intersect([](const Ray*, const Hit*, int) {})), theirs = double(robust->intersect_16());
         if (std::fabs(ours - theirs) > 1e-4 * theirs) throw std::logic_error("the two do not hit the same mesh");
+        const double proved = double(intersect(exact, [](const Ray*, const Hit*, int) {}));
+        if (std::fabs(ours - proved) > 1e-2 * proved) throw std::logic_error("the mesh and the surface are not hit alike");
     }
 };
 
@@ -98,6 +102,7 @@ void add(std::vector<Case>& cases, const std::string& scene, const std::string& 
     rays("rtcIntersect16, not robust", [](const View& v) { return v.fast->intersect_16(); });
     rays("rtcIntersect1, robust", [](const View& v) { return v.robust->intersect_1(); });
     rays("EmbreeScene::intersect", [](const View& v) { return v.intersect([](const Ray*, const Hit*, int) {}); });
+    rays("EmbreeScene::intersect, exact", [](const View& v) { return v.intersect(v.exact, [](const Ray*, const Hit*, int) {}); });
     rays("... and surfels_at its hits", [](const View& v) {
         double sum = 0;
         const std::size_t found = v.intersect([&](const Ray* rays, const Hit* hits, int n) {

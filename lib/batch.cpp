@@ -204,6 +204,11 @@ std::size_t PolynomialCells::cell_at(double u, double v) const {
     return index(inner_u_, u) * (inner_v_.size() + 1) + index(inner_v_, v);
 }
 
+void PolynomialCells::frames_in(std::size_t cell, Isa isa, std::size_t n, const double* u, const double* v, double* const* out) const {
+    const Cell& c = cells_[cell];
+    batch_kernel(isa, degree_, rational_, false)(c.c.data(), c.u, c.v, n, u, v, out);
+}
+
 void PolynomialCells::frames(Isa isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const {
     const bool row = v.size() == 1;
     const BatchKernel kernel = batch_kernel(isa, degree_, rational_, row);

@@ -53,6 +53,8 @@ public:
     const FrameError& error() const { return error_; }
     /// As Patch::frames. Points on a line between cells belong to the cell on its right.
     void frames(Isa isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const;
+    /// Of n points in one cell, its border included: out[3 d + axis][k], d = 0 position, 1 d/du, 2 d/dv. Cells are numbered u-major.
+    void frames_in(std::size_t cell, Isa isa, std::size_t n, const double* u, const double* v, double* const* out) const;
 
 private:
     struct Cell {

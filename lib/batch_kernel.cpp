@@ -1,14 +1,6 @@
-// Only the functions marked with an instruction set hold its instructions: everything else here, and whatever of the standard library the
-// linker shares between files, is compiled for the machine that the whole library is built for. The marked ones get the loop by inlining,
-// and the compiler's vectorizer makes of it what the instruction set can do. -ffp-contract=off keeps all of them equal to the bit.
 #include "batch_kernel.h"
 
-#if defined(__x86_64__) && defined(__GNUC__)
-#define ISOPARM_ISA_LOOPS 1
-#define ISOPARM_FOR(isa) [[gnu::target(isa)]]
-#endif
-#define ISOPARM_INLINE [[gnu::always_inline]] inline
-#define ISOPARM_INLINE_LAMBDA __attribute__((always_inline))
+#include "isa_loops.h"
 
 namespace isoparm {
 namespace {
@@ -88,12 +80,8 @@ ISOPARM_INLINE void loop(const double* __restrict c, double middle_u, double mid
     }
 ISOPARM_KERNEL(kernel_baseline)
 #ifdef ISOPARM_ISA_LOOPS
-ISOPARM_KERNEL(kernel_avx2, ISOPARM_FOR("avx2"))
-#ifdef __clang__
-ISOPARM_KERNEL(kernel_avx512, ISOPARM_FOR("avx512f,avx512dq,avx512vl"))
-#else
-ISOPARM_KERNEL(kernel_avx512, ISOPARM_FOR("avx512f,avx512dq,avx512vl,prefer-vector-width=512"))
-#endif
+ISOPARM_KERNEL(kernel_avx2, ISOPARM_FOR_AVX2)
+ISOPARM_KERNEL(kernel_avx512, ISOPARM_FOR_AVX512)
 #endif
 
 template <int N, bool rational, bool row> BatchKernel kernel(Isa isa) {

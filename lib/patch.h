@@ -60,6 +60,8 @@ public:
         virtual Enclosure enclose(const Box& box) const = 0;
         /// Encloses every position over the box; cheaper than enclose().
         virtual Vec3<Interval> enclose_points(const Box& box) const = 0;
+        /// As Patch::batch().
+        virtual const PolynomialCells* batch() const { return nullptr; }
         /// As Patch::exact_cell().
         virtual std::vector<Polynomial> exact_cell(std::size_t, std::size_t) const { return {}; }
         /// The unit normal at a point where S_u or S_v does not exist, if the surface has one there all the same.
@@ -86,6 +88,8 @@ public:
     /// domain; all arrays have u's size, else throws std::invalid_argument. No allocation for polynomial and rational surfaces. This
     /// machine must run `isa`; there is no reason to give it but to measure.
     void frames(std::span<const double> u, std::span<const double> v, const FrameArrays& out, Isa isa = chosen_isa()) const;
+    /// What computes frames() with a proved error, where the surface is polynomial or rational as told above; else nullptr.
+    const PolynomialCells* batch() const { return impl_->batch(); }
     Enclosure enclose(const Box& box) const { return impl_->enclose(box); }
     Vec3<Interval> enclose_points(const Box& box) const { return impl_->enclose_points(box); }
     /// The surface between lines_u()[i], lines_u()[i+1] and lines_v()[j], lines_v()[j+1], these included: polynomials x, y, z, or x, y, z

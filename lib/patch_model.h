@@ -98,6 +98,7 @@ public:
         all.centre = run<2>(Interval(all.u), Interval(all.v));
         return all;
     }
+    const PolynomialCells* batch() const override { return batch_.exist() ? &batch_ : nullptr; }
     std::vector<Polynomial> exact_cell(std::size_t i, std::size_t j) const override {
         if (const auto* p = exact(i, j)) return {p->x, p->y, p->z};
         auto form = homogeneous_form({edges_u_[i], edges_u_[i + 1]}, {edges_v_[j], edges_v_[j + 1]});

@@ -52,7 +52,7 @@ struct Geometry {
 /// What queries tell the callbacks of patches, which compute in double.
 /// There is one of each for every ray of the query.
 struct PatchRays {
-    const RayPlanes* planes = nullptr;
+    const RayPacket* rays = nullptr;
     Hit* nearest = nullptr;               // of patches
     bool* undecided = nullptr;
     std::vector<Hit>* layers = nullptr;   // where hits of what lets light through go; otherwise they count as any other
@@ -160,22 +160,34 @@ float far_enough(double x) {
 
 /// Rays of a callback in one leaf of a patch.
 struct Meeting {
-    int lane[EmbreeScene::packet];    // of the callback
+    int lane[EmbreeScene::packet];      // of the callback
     unsigned ray[EmbreeScene::packet];  // of the query
     Roots roots[EmbreeScene::packet];
     int count = 0;
 
     Meeting(const int* valid, RTCRayN* rays, unsigned n, const ExactPatch& patch, unsigned leaf, PatchRays& query) {
-        const RayPlanes* planes[EmbreeScene::packet];
         double farthest[EmbreeScene::packet];
+        bool in_place = n == EmbreeScene::packet;  // lanes are those of the query
         for (unsigned i = 0; i < n; ++i) {
             if (!valid[i]) continue;
             lane[count] = static_cast<int>(i), ray[count] = RTCRayN_id(rays, n, i);
-            planes[count] = &query.planes[ray[count]];
+            in_place = in_place && ray[count] == i;
             farthest[count++] = RTCRayN_tfar(rays, n, i);
         }
         const KeepSubnormals keep;
-        patch.meet(leaf, planes, farthest, count, roots);
+        if (in_place && count > EmbreeScene::packet / 2) {
+            std::uint32_t active = 0;
+            double far[EmbreeScene::packet] = {};
+            for (int k = 0; k < count; ++k) active |= 1u << lane[k], far[lane[k]] = farthest[k];
+            patch.meet(leaf, *query.rays, far, EmbreeScene::packet, active, roots);
+            for (int k = 0; k < count; ++k)
+                if (lane[k] != k) roots[k] = roots[lane[k]];
+        } else {
+            RayPacket some;
+            for (int k = 0; k < EmbreeScene::packet; ++k) some.put(k, query.rays->at(static_cast<int>(ray[k < count ? k : 0])));
+            for (int k = count; k < EmbreeScene::packet; ++k) farthest[k] = farthest[0];
+            patch.meet(leaf, some, farthest, count, ~0u, roots);
+        }
         for (int k = 0; k < count; ++k) query.undecided[ray[k]] = query.undecided[ray[k]] || roots[k].undecided;
     }
 };
@@ -328,10 +340,10 @@ struct EmbreeScene::State {
         fill(ray, start, r);
         bool open = false;
         PatchRays to_patches;
-        RayPlanes planes;
+        RayPacket packet;
         if (patches) {
-            planes = RayPlanes({ray.origin + start * ray.direction, ray.direction});
-            to_patches.planes = &planes, to_patches.undecided = &open, to_patches.transmittance = &query.transmittance;
+            packet.set_all(ray.origin + start * ray.direction, ray.direction);
+            to_patches.rays = &packet, to_patches.undecided = &open, to_patches.transmittance = &query.transmittance;
             query.patches = &to_patches;
         }
         occluded_1(scene, query, &r);
@@ -451,13 +463,17 @@ void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
         r.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
-    RayPlanes planes[packet];
+    RayPacket planes;
     Hit nearest[packet];
     bool open[packet] = {};
-    PatchRays to_patches{planes, nearest, open};
+    PatchRays to_patches{&planes, nearest, open};
     Query query(true);
     if (s.patches) {
-        for (int i = 0; i < n; ++i) planes[i] = RayPlanes({rays[i].origin + start[i] * rays[i].direction, rays[i].direction});
+        for (int i = 0; i < packet; ++i) {
+            const int k = i < n ? i : 0;
+            planes.set(i, rays[k].origin + start[k] * rays[k].direction, rays[k].direction);
+        }
+        planes.set_planes(packet);
         query.patches = &to_patches;
     }
     {
@@ -506,10 +522,10 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
     Hit nearest;
     bool open = false;
     PatchRays to_patches;
-    RayPlanes planes;
+    RayPacket planes;
     if (s.patches) {
-        planes = RayPlanes({ray.origin + start * ray.direction, ray.direction});
-        to_patches.planes = &planes, to_patches.nearest = &nearest, to_patches.undecided = &open, to_patches.layers = &hits;
+        planes.set_all(ray.origin + start * ray.direction, ray.direction);
+        to_patches.rays = &planes, to_patches.nearest = &nearest, to_patches.undecided = &open, to_patches.layers = &hits;
         query.patches = &to_patches;
     }
     {
@@ -563,14 +579,15 @@ void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, do
         s.fill(ray, s.entry(ray), r, i);
     }
     Query query;
-    RayPlanes planes[packet];
+    RayPacket planes;
     bool open[packet] = {};
-    PatchRays to_patches{planes, nullptr, open};
+    PatchRays to_patches{&planes, nullptr, open};
     if (s.patches) {
         for (int i = 0; i < packet; ++i) {
             const Ray& ray = rays[valid[i] ? i : std::countr_zero(active)];
-            planes[i] = RayPlanes({ray.origin + s.entry(ray) * ray.direction, ray.direction});
+            planes.set(i, ray.origin + s.entry(ray) * ray.direction, ray.direction);
         }
+        planes.set_planes(packet);
         query.patches = &to_patches;
     }
     occluded_16(valid, s.scene, query, &r);

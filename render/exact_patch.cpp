@@ -6,17 +6,14 @@
 #include <span>
 
 #include "error.h"
-#include "local_frame.h"
 
 namespace isoparm {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRegular = 0.9;       // of |I - Y J|, which must be below 1: far enough from it for rounding not to matter
-constexpr double kFlat = 0.4;          // the same of leaves, seen face on
+constexpr double kFlat = 0.4;          // |I - Y J| of leaves, seen face on
 constexpr double kLargest = 1.0 / 8;   // half a leaf's side, in sizes of the scene
 constexpr double kSmallest = 5e-4;     // leaves below this are not cut any further before there is a ray
-constexpr double kEdgeOn = 1e-9;       // det / (|a| |b|) below which rounding would count
 constexpr int kDepth = 12;             // bisections of the domain to leaves
 constexpr int kKept = 20;              // bisections of leaves that are kept for other rays,
 constexpr std::size_t kMostKept = 100'000;  // and how many of a patch: 30 MB
@@ -24,6 +21,7 @@ constexpr double kSlender = 6;         // sides of a leaf: the longer one is hal
 constexpr int kPlaces = 200;           // boxes that a ray may look at in one leaf
 constexpr double kPoint = 1e-9;        // boxes of this size, in sizes of the scene, are not halved again
 constexpr int kSteps = 24;
+constexpr int kGroup = 8;              // lanes that loops take at once
 constexpr double kRounding = 1e-14;    // relative: far above that of a few operations in double
 
 double length_of(const Vec3<Interval>& d) { return rounding::length_up(mag(d.x), mag(d.y), mag(d.z)); }
@@ -34,22 +32,23 @@ bool bounded(const Vec3<Interval>& x) { return x.x.bounded() && x.y.bounded() &&
 /// The Taylor coefficient of a jet with index k.
 template <class Jets> Vec3<Interval> coefficient(const Jets& j, int k) { return {j.x.c[k], j.y.c[k], j.z.c[k]}; }
 
+/// Of the place of the leaf's map.
+Vec2 nearest_parameters(const LeafMap& leaf, double x, double y) {
+    const double u = std::clamp(leaf.u + x * leaf.hu, leaf.box.u.lo, leaf.box.u.hi), v = std::clamp(leaf.v + y * leaf.hv, leaf.box.v.lo, leaf.box.v.hi);
+    return {u, leaf.slanted && u + v > 1 ? 1 - u : v};
+}
+
 Interval part_of(const Interval& t, bool upper) { return upper ? Interval(mid(t), t.hi) : Interval(t.lo, mid(t)); }
 
 }  // namespace
-
-RayPlanes::RayPlanes(const Ray& ray) : origin(ray.origin), direction(ray.direction) {
-    const LocalFrame frame(direction);
-    n1 = frame.x, n2 = frame.y;
-}
 
 // ---- leaves ---------------------------------------------------------------------------------------------------------
 ExactPatch::Leaf::~Leaf() {
     for (const auto& half : halves) delete half.load(std::memory_order_acquire);
 }
 
-void ExactPatch::set(Leaf& leaf, const Box& given) const {
-    leaf.box = given;
+void ExactPatch::set(Leaf& leaf, const Box& given, std::uint32_t cell) const {
+    leaf.box = given, leaf.cell = cell;
     if (patch_.domain() == Domain::triangle) {
         leaf.box.u.hi = std::min(given.u.hi, 1 - given.v.lo);
         leaf.box.v.hi = std::min(given.v.hi, 1 - given.u.lo);
@@ -64,6 +63,7 @@ void ExactPatch::set(Leaf& leaf, const Box& given) const {
     leaf.bend = leaf.turn_u = leaf.turn_v = leaf.uu = leaf.uv = leaf.vv = kInfinity;
     if (bounded(s) && bounded(su) && bounded(sv) && bounded(over_u) && bounded(over_v)) {
         leaf.s = middle(s), leaf.a = leaf.hu * middle(su), leaf.b = leaf.hv * middle(sv);
+        leaf.size_s = length(leaf.s), leaf.size_a = length(leaf.a), leaf.size_b = length(leaf.b);
         // The middle of the derivatives lies in their range: that is what continues S beyond the leaf (docs/exact.md).
         const double turn_u = leaf.hu * length_of(over_u - Vec3<Interval>(middle(su))) * (1 + kRounding);
         const double turn_v = leaf.hv * length_of(over_v - Vec3<Interval>(middle(sv))) * (1 + kRounding);
@@ -72,7 +72,7 @@ void ExactPatch::set(Leaf& leaf, const Box& given) const {
                      vv = 2 * length_of(coefficient(e.over, 5)) * leaf.hv * leaf.hv;
         const double second = 0.5 * uu + uv + 0.5 * vv;
         const double known = radius(s) + leaf.hu * radius(su) + leaf.hv * radius(sv);
-        leaf.bend = (std::min(second, turn_u + turn_v) + known) * (1 + kRounding) + kRounding * (length(leaf.s) + length(leaf.a) + length(leaf.b));
+        leaf.bend = (std::min(second, turn_u + turn_v) + known) * (1 + kRounding) + kRounding * (leaf.size_s + leaf.size_a + leaf.size_b);
         if (std::isfinite(second)) leaf.uu = uu, leaf.uv = uv, leaf.vv = vv;
         if (!std::isfinite(leaf.bend)) leaf.bend = leaf.turn_u = leaf.turn_v = kInfinity;
         for (int k = 0; k < 3 && std::isfinite(leaf.bend); ++k) {
@@ -85,7 +85,7 @@ void ExactPatch::set(Leaf& leaf, const Box& given) const {
 
 /// Across the direction that gains more: q of a leaf seen face on is turn_u / a + turn_v / b.
 std::array<Box, 2> ExactPatch::halves(const Leaf& leaf) {
-    const double a = length(leaf.a), b = length(leaf.b);
+    const double a = leaf.size_a, b = leaf.size_b;
     bool along_u = std::isfinite(leaf.bend) ? a >= b : leaf.hu >= leaf.hv;
     if (std::isfinite(leaf.uu) && a > 0 && b > 0) {
         const double by_u = leaf.uu / a + leaf.uv / b, by_v = leaf.vv / b + leaf.uv / a;
@@ -102,7 +102,7 @@ const ExactPatch::Leaf* ExactPatch::half_of(const Leaf& leaf, int k, std::vector
     const Box box = halves(leaf)[static_cast<std::size_t>(k)];
     if (outside(box)) return nullptr;
     auto made = std::make_unique<Leaf>();
-    set(*made, box);
+    set(*made, box, leaf.cell);
     made->depth = leaf.depth + 1;
     if (made->depth > kKept || kept_.fetch_add(1, std::memory_order_relaxed) >= kMostKept) return kept.emplace_back(std::move(made)).get();
     const Leaf* none = nullptr;
@@ -110,11 +110,11 @@ const ExactPatch::Leaf* ExactPatch::half_of(const Leaf& leaf, int k, std::vector
     return none;  // another thread was faster, with the same numbers
 }
 
-void ExactPatch::add_leaves(const Box& box, int depth) {
+void ExactPatch::add_leaves(const Box& box, std::uint32_t cell, int depth) {
     if (outside(box)) return;
     Leaf& leaf = leaves_.emplace_back();
-    set(leaf, box);
-    const double a = length(leaf.a), b = length(leaf.b), area = length(cross(leaf.a, leaf.b));
+    set(leaf, box, cell);
+    const double a = leaf.size_a, b = leaf.size_b, area = length(cross(leaf.a, leaf.b));
     const bool flat = b * leaf.turn_u + a * leaf.turn_v <= kFlat * area && std::max(a, b) <= kLargest * size_;
     const bool finite_box = finite(leaf.values.low) && finite(leaf.values.high);
     if (flat || depth == 0 || (finite_box && leaf.values.diagonal() <= kSmallest * size_)) {
@@ -123,138 +123,94 @@ void ExactPatch::add_leaves(const Box& box, int depth) {
     }
     const auto parts = halves(leaf);
     leaves_.pop_back();
-    for (const Box& half : parts) add_leaves(half, depth - 1);
+    for (const Box& half : parts) add_leaves(half, cell, depth - 1);
 }
 
-ExactPatch::ExactPatch(const Patch& patch, double size) : patch_(patch), size_(size), slack_(slack(size)) {
+ExactPatch::ExactPatch(const Patch& patch, double size)
+    : patch_(patch), cells_(patch_.batch()), kernel_(exact_kernel(chosen_isa())), size_(size), slack_(slack(size)) {
     const auto us = patch.lines_u(), vs = patch.lines_v();
+    std::uint32_t cell = 0;
     for (std::size_t i = 0; i + 1 < us.size(); ++i)
-        for (std::size_t j = 0; j + 1 < vs.size(); ++j) add_leaves({{us[i], us[i + 1]}, {vs[j], vs[j + 1]}}, kDepth);
+        for (std::size_t j = 0; j + 1 < vs.size(); ++j) add_leaves({{us[i], us[i + 1]}, {vs[j], vs[j + 1]}}, cell++, kDepth);
 }
 
-// ---- one ray, one leaf ----------------------------------------------------------------------------------------------
-ExactPatch::Aim ExactPatch::aim(const Leaf& leaf, const RayPlanes& ray, double farthest) const {
-    Aim r;
-    if (!std::isfinite(leaf.bend)) return r;
-    const Point to = leaf.s - ray.origin;
-    const double f1 = dot(ray.n1, to), f2 = dot(ray.n2, to);
-    const double a1 = dot(ray.n1, leaf.a), a2 = dot(ray.n2, leaf.a), b1 = dot(ray.n1, leaf.b), b2 = dot(ray.n2, leaf.b);
-    const double bend = leaf.bend + slack_ + kRounding * (std::fabs(to.x) + std::fabs(to.y) + std::fabs(to.z));
-    r.verdict = Aim::Verdict::miss;
-    if (std::fabs(f1) > std::fabs(a1) + std::fabs(b1) + bend || std::fabs(f2) > std::fabs(a2) + std::fabs(b2) + bend) return r;
-    const double along = dot(ray.direction, to), da = std::fabs(dot(ray.direction, leaf.a)), db = std::fabs(dot(ray.direction, leaf.b));
-    if (along + da + db + bend < 0 || along - da - db - bend > farthest) return r;
-
-    // Seen from the ray, the leaf is a parallelogram, grown by bend: across its sides too, also where it is seen edge on. This is K(X)
-    // that does not meet X, times det.
-    const double det = a1 * b2 - a2 * b1, a = std::sqrt(a1 * a1 + a2 * a2), b = std::sqrt(b1 * b1 + b2 * b2);
-    const double af = a2 * f1 - a1 * f2, bf = b1 * f2 - b2 * f1;
-    if (std::fabs(bf) > std::fabs(det) + b * bend || std::fabs(af) > std::fabs(det) + a * bend) return r;
-    r.verdict = Aim::Verdict::open;
-    r.q = (b * leaf.turn_u + a * leaf.turn_v) / std::fabs(det);  // |Y (J - J(c))| <= (b, a) (turn_u, turn_v) / det, entry by entry: of rank 1
-    if (!(r.q < kRegular) || !(std::fabs(det) > kEdgeOn * a * b)) return r;
-    r.y11 = b2 / det, r.y12 = -b1 / det, r.y21 = -a2 / det, r.y22 = a1 / det;
-    r.x = bf / det, r.y = af / det;
-    r.verdict = Aim::Verdict::one;
-    r.wx = b, r.wy = a;
-    r.noise = 1e-15 * (length(to) + length(leaf.s)) / std::fabs(det);
-    r.slack = slack_ / std::fabs(det);
-    return r;
+// ---- rays, one leaf -------------------------------------------------------------------------------------------------
+void ExactPatch::aim(const Leaf& leaf, const RayPacket& rays, double const* farthest, int n, AimPacket& out) const {
+    if (std::isfinite(leaf.bend)) return kernel_.aim(leaf, rays, slack_, farthest, n, out);
+    std::fill_n(out.verdict, RayPacket::lanes, AimPacket::open);
 }
 
-/// The parameters of (x,y), or of the nearest place in the leaf and the domain, which is (cx,cy).
-Vec2 ExactPatch::place(const Leaf& leaf, double x, double y, double& cx, double& cy) const {
-    cx = std::clamp(x, -1.0, 1.0), cy = std::clamp(y, -1.0, 1.0);
-    Vec2 p{std::clamp(leaf.u + cx * leaf.hu, leaf.box.u.lo, leaf.box.u.hi), std::clamp(leaf.v + cy * leaf.hv, leaf.box.v.lo, leaf.box.v.hi)};
-    if (leaf.slanted && p.x + p.y > 1) {
-        p.y = 1 - p.x;
-        cy = (p.y - leaf.v) / leaf.hv;
+/// Of the lanes that need them.
+void ExactPatch::frames(const Leaf& leaf, int n, NewtonPacket& p) const {
+    if (cells_) {
+        double* rows[9];
+        for (int i = 0; i < 9; ++i) rows[i] = p.frame[i];
+        return cells_->frames_in(leaf.cell, chosen_isa(), static_cast<std::size_t>(n), p.u, p.v, rows);
     }
-    return p;
+    double u[packet], v[packet], out[9][packet];
+    int lane[packet];
+    std::size_t count = 0;
+    for (int i = 0; i < n; ++i)
+        if (p.state[i] == NewtonPacket::active) u[count] = p.u[i], v[count] = p.v[i], lane[count++] = i;
+    const auto three = [&](int of) { return std::array<std::span<double>, 3>{{{out[of], count}, {out[of + 1], count}, {out[of + 2], count}}}; };
+    patch_.frames({u, count}, {v, count}, {three(0), three(3), three(6)});
+    for (std::size_t k = 0; k < count; ++k)
+        for (int i = 0; i < 9; ++i) p.frame[i][lane[k]] = out[i][k];
 }
 
-/// Newton's method for rays that have one root at most in the leaf, all of them at once. Beyond the leaf, S goes on as S(nearest place)
-/// + a (x - cx) + b (y - cy), whose difference quotients have the same bounds.
-void ExactPatch::solve(const Leaf& leaf, const RayPlanes* const* rays, const double* farthest, const Aim* aims, int n, Roots* const* found) const {
-    double x[packet], y[packet], before[packet];
-    int active[packet], count = n;
-    for (int i = 0; i < n; ++i) active[i] = i, x[i] = std::clamp(aims[i].x, -1.0, 1.0), y[i] = std::clamp(aims[i].y, -1.0, 1.0), before[i] = kInfinity;
-    double u[packet], v[packet], cx[packet], cy[packet], out[9][packet];
-    for (int step = 0; step < kSteps && count > 0; ++step) {
-        for (int k = 0; k < count; ++k) {
-            const Vec2 p = place(leaf, x[active[k]], y[active[k]], cx[k], cy[k]);
-            u[k] = p.x, v[k] = p.y;
-        }
-        const std::size_t size = static_cast<std::size_t>(count);
-        const auto three = [&](int of) { return std::array<std::span<double>, 3>{{{out[of], size}, {out[of + 1], size}, {out[of + 2], size}}}; };
-        patch_.frames({u, size}, {v, size}, {three(0), three(3), three(6)});
-        int left = 0;
-        for (int k = 0; k < count; ++k) {
-            const int i = active[k];
-            const Aim& aim = aims[i];
-            const RayPlanes& ray = *rays[i];
-            const double px = x[i] - cx[k], py = y[i] - cy[k];
-            Point to = Point{out[0][k], out[1][k], out[2][k]} - ray.origin;
-            if (px != 0) to += px * leaf.a;
-            if (py != 0) to += py * leaf.b;
-            const double f1 = dot(ray.n1, to), f2 = dot(ray.n2, to);
-            const double sx = aim.y11 * f1 + aim.y12 * f2, sy = aim.y21 * f1 + aim.y22 * f2, move = std::max(std::fabs(sx) / aim.wx, std::fabs(sy) / aim.wy);
-            if (!std::isfinite(move)) {  // the formula has no value here
-                found[i]->undecided = true;
-                continue;
-            }
-            const double within = move / (1 - aim.q);  // the root is that close
-            const double wide = within + aim.slack;
-            if (std::fabs(x[i]) > 1 + wide * aim.wx || std::fabs(y[i]) > 1 + wide * aim.wy) continue;
-            if (leaf.slanted && py > wide * (aim.wy + leaf.hu / leaf.hv * aim.wx)) continue;
-            if (move <= aim.noise || (move < 1e3 * aim.noise && move > 0.25 * before[i])) {
-                Root root{dot(ray.direction, to), u[k], v[k], 0};
-                if (root.distance >= 0 && root.distance <= farthest[i] && found[i]->count < Roots::most) {
-                    prove(leaf, ray, aim, x[i], y[i], root);
-                    found[i]->undecided = found[i]->undecided || !std::isfinite(root.error);
-                    found[i]->root[found[i]->count++] = root;
-                }
-                continue;
-            }
-            before[i] = move;
-            const Point su = px == 0 ? leaf.hu * Point{out[3][k], out[4][k], out[5][k]} : leaf.a;
-            const Point sv = py == 0 ? leaf.hv * Point{out[6][k], out[7][k], out[8][k]} : leaf.b;
-            const double a1 = dot(ray.n1, su), a2 = dot(ray.n2, su), b1 = dot(ray.n1, sv), b2 = dot(ray.n2, sv), det = a1 * b2 - a2 * b1;
-            const double dx = (b2 * f1 - b1 * f2) / det, dy = (a1 * f2 - a2 * f1) / det;
-            const bool newton = step < 8 && std::isfinite(dx) && std::isfinite(dy);  // otherwise the map that is proved to contract
-            x[i] -= newton ? dx : sx, y[i] -= newton ? dy : sy;
-            active[left++] = i;
-        }
-        count = left;
+/// Newton's method for rays that have one root at most in the leaf, all of them at once.
+void ExactPatch::solve(const Leaf& leaf, const RayPacket& rays, const double* farthest, const AimPacket& aim, int n, Roots* found) const {
+    NewtonPacket p;
+    kernel_.begin(leaf, aim, n, p);
+    bool going = true;
+    for (int step = 0; step < kSteps && going; ++step) {
+        frames(leaf, n, p);
+        going = kernel_.step(leaf, rays, aim, step < 8, n, p);
     }
-    for (int k = 0; k < count; ++k) found[active[k]]->undecided = true;
+    for (int i = 0; i < n; ++i) {
+        Roots& to = found[i];
+        if (p.state[i] == NewtonPacket::active || p.state[i] == NewtonPacket::undecided) to.undecided = true;
+        if (p.state[i] != NewtonPacket::found || !(p.distance[i] >= 0 && p.distance[i] <= farthest[i]) || to.count == Roots::most) continue;
+        const double error = proved_error(leaf, rays, aim, p, i);
+        to.undecided = to.undecided || !std::isfinite(error);
+        to.root[to.count++] = {p.distance[i], p.u[i], p.v[i], error};
+    }
 }
 
-/// Krawczyk's operator about what Newton found, with an enclosure of S there: the root is no farther than error.
-void ExactPatch::prove(const Leaf& leaf, const RayPlanes& ray, const Aim& aim, double x, double y, Root& root) const {
-    double cx = 0, cy = 0;
-    const Vec2 p = place(leaf, x, y, cx, cy);
-    const Vec3<Interval> s = patch_.enclose_point(p.x, p.y);
-    Point to = middle(s) - ray.origin;
-    to += (x - cx) * leaf.a;
-    to += (y - cy) * leaf.b;
-    const double off = radius(s) + 1e-15 * (length(to) + length(middle(s)) + length(ray.origin));
-    const double f1 = dot(ray.n1, to), f2 = dot(ray.n2, to);
-    const double mx = std::fabs(aim.y11 * f1 + aim.y12 * f2) + (std::fabs(aim.y11) + std::fabs(aim.y12)) * off;
-    const double my = std::fabs(aim.y21 * f1 + aim.y22 * f2) + (std::fabs(aim.y21) + std::fabs(aim.y22)) * off;
-    const double within = std::max(mx / aim.wx, my / aim.wy) / (1 - aim.q) * (1 + 1e-9);
-    const double error = within * (aim.wx * (length(leaf.a) + leaf.turn_u) + aim.wy * (length(leaf.b) + leaf.turn_v));
-    root.error = error < 1e-6 * size_ ? error : kInfinity;
+/// Krawczyk's operator about what Newton found: the root is no farther than this from S(u,v). S(u,v) is known to the error that is proved of
+/// the patch's polynomials, or enclosed.
+double ExactPatch::proved_error(const Leaf& leaf, const RayPacket& rays, const AimPacket& aim, const NewtonPacket& p, int lane) const {
+    double mx = std::fabs(p.step_x[lane]), my = std::fabs(p.step_y[lane]), off = 0, size = 0;
+    if (cells_) {
+        const Point s{p.frame[0][lane], p.frame[1][lane], p.frame[2][lane]};
+        off = 1.7320509 * cells_->error().position, size = length(s);
+    } else {
+        const Vec3<Interval> s = patch_.enclose_point(p.u[lane], p.v[lane]);
+        const RayPlanes ray = rays.at(lane);
+        const Point to = middle(s) - ray.origin + (p.x[lane] - p.cx[lane]) * leaf.a + (p.y[lane] - p.cy[lane]) * leaf.b;
+        const double f1 = dot(ray.n1, to), f2 = dot(ray.n2, to);
+        mx = std::fabs(aim.y11[lane] * f1 + aim.y12[lane] * f2), my = std::fabs(aim.y21[lane] * f1 + aim.y22[lane] * f2);
+        off = radius(s), size = length(middle(s));
+    }
+    off += 1e-15 * (std::fabs(p.distance[lane]) + size + length(rays.at(lane).origin));
+    mx += (std::fabs(aim.y11[lane]) + std::fabs(aim.y12[lane])) * off, my += (std::fabs(aim.y21[lane]) + std::fabs(aim.y22[lane])) * off;
+    const double within = std::max(mx / aim.wx[lane], my / aim.wy[lane]) / (1 - aim.q[lane]) * (1 + 1e-9);
+    const double error = within * (aim.wx[lane] * (leaf.size_a + leaf.turn_u) + aim.wy[lane] * (leaf.size_b + leaf.turn_v));
+    return error < 1e-6 * size_ ? error : kInfinity;
 }
 
 /// Halves what is neither missed nor met once.
 void ExactPatch::search(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const {
     std::vector<const Leaf*> open{&leaf};
     std::vector<std::unique_ptr<const Leaf>> kept;
+    RayPacket one;
+    double far[kGroup];
+    for (int i = 0; i < kGroup; ++i) one.put(i, ray), far[i] = farthest;
+    AimPacket to;
     for (int places = 0; !open.empty();) {
         const Leaf& at = *open.back();
         open.pop_back();
-        if (places > kPlaces || (std::isfinite(at.bend) && length(at.a) + length(at.b) + at.bend < kPoint * size_) || length(at.a) + length(at.b) < 1e-12 * length(at.s) ||
+        if (places > kPlaces || (std::isfinite(at.bend) && at.size_a + at.size_b + at.bend < kPoint * size_) || at.size_a + at.size_b < 1e-12 * at.size_s ||
             std::max(at.hu, at.hv) < 1e-15 * std::max({1.0, std::fabs(at.u), std::fabs(at.v)})) {
             settle(at, ray, farthest, found);
             continue;
@@ -263,11 +219,11 @@ void ExactPatch::search(const Leaf& leaf, const RayPlanes& ray, double farthest,
             const Leaf* part = half_of(at, k, kept);
             if (!part) continue;
             ++places;
-            const Aim a = aim(*part, ray, farthest);
-            Roots* to = &found;
-            const RayPlanes* rays = &ray;
-            if (a.verdict == Aim::Verdict::one) solve(*part, &rays, &farthest, &a, 1, &to);
-            if (a.verdict == Aim::Verdict::open) open.push_back(part);
+            aim(*part, one, far, 1, to);
+            if (to.verdict[0] == AimPacket::open) open.push_back(part);
+            if (to.verdict[0] != AimPacket::one) continue;
+            std::fill_n(to.verdict + 1, kGroup - 1, AimPacket::miss);
+            solve(*part, one, far, to, 1, &found);
         }
     }
 }
@@ -277,12 +233,10 @@ void ExactPatch::search(const Leaf& leaf, const RayPlanes& ray, double farthest,
 void ExactPatch::settle(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const {
     found.undecided = true;
     double x = 0, y = 0, best = kInfinity, damping = 1e-6;
-    Root root;
-    root.error = kInfinity;
+    Root root{0, 0, 0, kInfinity};
     Point du, dv, best_to;
     for (int step = 0; step < kSteps && damping < 1e6; ++step) {
-        double cx = 0, cy = 0;
-        const Vec2 p = place(leaf, x, y, cx, cy);
+        const Vec2 p = nearest_parameters(leaf, x, y);
         const PointFrame f = patch_.frame(p.x, p.y);
         const Point to = Point{f.x.c[0], f.y.c[0], f.z.c[0]} - ray.origin;
         const double off = std::hypot(dot(ray.n1, to), dot(ray.n2, to));
@@ -306,20 +260,19 @@ void ExactPatch::settle(const Leaf& leaf, const RayPlanes& ray, double farthest,
     found.root[found.count++] = root;
 }
 
-void ExactPatch::meet(std::size_t which, const RayPlanes* const* rays, const double* farthest, int n, Roots* found) const {
+void ExactPatch::meet(std::size_t which, const RayPacket& rays, const double* farthest, int n, std::uint32_t active, Roots* found) const {
     const Leaf& leaf = leaves_[which];
-    const RayPlanes* one[packet];
-    double far[packet];
-    Aim aims[packet];
-    Roots* to[packet];
-    int count = 0;
-    for (int i = 0; i < n; ++i) {
-        found[i].count = 0, found[i].undecided = false;
-        const Aim a = aim(leaf, *rays[i], farthest[i]);
-        if (a.verdict == Aim::Verdict::open) search(leaf, *rays[i], farthest[i], found[i]);
-        if (a.verdict == Aim::Verdict::one) one[count] = rays[i], far[count] = farthest[i], aims[count] = a, to[count] = &found[i], ++count;
+    AimPacket to;
+    aim(leaf, rays, farthest, n, to);
+    bool any = false;
+    for (int i = 0; i < packet; ++i) {
+        const bool asked = i < n && (active >> i & 1);
+        if (i < n) found[i].count = 0, found[i].undecided = false;
+        if (asked && to.verdict[i] == AimPacket::open) search(leaf, rays.at(i), farthest[i], found[i]);
+        if (!asked) to.verdict[i] = AimPacket::miss;
+        any = any || to.verdict[i] == AimPacket::one;
     }
-    if (count > 0) solve(leaf, one, far, aims, count, to);
+    if (any) solve(leaf, rays, farthest, to, n, found);
 }
 
 }  // namespace isoparm

@@ -15,35 +15,28 @@
 #include <memory>
 #include <vector>
 
-#include "camera.h"
+#include "exact_kernel.h"
 #include "patch.h"
 
 namespace isoparm {
 
-/// A ray as the two planes through it.
-struct RayPlanes {
-    Point origin, direction, n1, n2;  // unit, at right angles
-    RayPlanes() = default;
-    explicit RayPlanes(const Ray& ray);
-};
-
-/// Where a ray meets the patch.
+/// Where a ray meets the patch. Without initial values: there are many of them in every packet.
 struct Root {
-    double distance = 0, u = 0, v = 0;
-    double error = 0;  // proved, scene units: the exact point is no farther than this from S(u,v); infinite: not proved
+    double distance, u, v;
+    double error;  // proved, scene units: the exact point is no farther than this from S(u,v); infinite: not proved
 };
 
 /// What a ray meets in one leaf.
 struct Roots {
     static constexpr int most = 8;
+    int count;
+    bool undecided;  // some place was neither proved to be met nor to be missed
     Root root[most];
-    int count = 0;
-    bool undecided = false;  // some place was neither proved to be met nor to be missed
 };
 
 class ExactPatch {
 public:
-    static constexpr int packet = 16;
+    static constexpr int packet = RayPacket::lanes;
 
     /// `size`: diagonal of the scene. A ray counts as meeting the border of the patch where it passes within slack(size) of it, so that
     /// nothing shines through between neighbours. Refers to the patch. Throws Error(input) where the patch cannot be bounded.
@@ -53,21 +46,16 @@ public:
     std::size_t leaves() const { return leaves_.size(); }
     /// Holds the patch over that leaf.
     Bounds box(std::size_t leaf) const { return leaves_[leaf].values; }
-    /// Where n <= packet rays meet a leaf, at distances from 0 to farthest[i].
-    void meet(std::size_t leaf, const RayPlanes* const* rays, const double* farthest, int n, Roots* found) const;
+    /// Where rays meet a leaf, at distances from 0 to farthest[i]: those of the first n lanes that have a bit in `active`. `farthest` has
+    /// numbers for all lanes.
+    void meet(std::size_t leaf, const RayPacket& rays, const double* farthest, int n, std::uint32_t active, Roots* found) const;
 
 private:
-    /// S(u + x hu, v + y hv) = s + a x + b y, up to `bend`, for -1 <= x, y <= 1 in the domain.
-    struct Leaf {
-        Box box;
-        double u = 0, v = 0, hu = 0, hv = 0;
-        Point s, a, b;
-        double bend = 0;                // infinite where derivatives have no bound
-        double turn_u = 0, turn_v = 0;  // at least |S_u hu - a|, |S_v hv - b| anywhere, infinite likewise
+    struct Leaf : LeafMap {
         double uu = 0, uv = 0, vv = 0;  // at least |S_uu| hu^2, |S_uv| hu hv, |S_vv| hv^2, infinite likewise
         Bounds values;
-        bool slanted = false;           // u + v = 1 runs through it
-        int depth = 0;                  // bisections below a leaf
+        std::uint32_t cell = 0;  // of the patch
+        int depth = 0;           // bisections below a leaf
         mutable std::array<std::atomic<const Leaf*>, 2> halves{};  // made when a ray first needs them
 
         Leaf() = default;
@@ -75,29 +63,22 @@ private:
         Leaf& operator=(const Leaf&) = delete;
         ~Leaf();
     };
-    /// A ray against the linear map of a leaf.
-    struct Aim {
-        enum class Verdict { miss, one, open } verdict = Verdict::open;
-        double y11 = 0, y12 = 0, y21 = 0, y22 = 0;  // Y
-        double x = 0, y = 0;                        // where the linear map meets the ray
-        double wx = 1, wy = 1;                      // weights of the norm max(|x| / wx, |y| / wy)
-        double q = 0;                               // at least |I - Y J| in that norm
-        double slack = 0, noise = 0;                // of it: of the border, and what rounding may make of a step
-    };
-    void set(Leaf& leaf, const Box& box) const;
-    void add_leaves(const Box& box, int depth);
+    void set(Leaf& leaf, const Box& box, std::uint32_t cell) const;
+    void add_leaves(const Box& box, std::uint32_t cell, int depth);
     static std::array<Box, 2> halves(const Leaf& leaf);
     bool outside(const Box& box) const { return patch_.domain() == Domain::triangle && box.u.lo + box.v.lo >= 1; }
     /// Half `k` of a leaf, in `kept` where it is too small to be kept for other rays; nullptr outside the domain.
     const Leaf* half_of(const Leaf& leaf, int k, std::vector<std::unique_ptr<const Leaf>>& kept) const;
-    Aim aim(const Leaf& leaf, const RayPlanes& ray, double farthest) const;
-    Vec2 place(const Leaf& leaf, double x, double y, double& cx, double& cy) const;
-    void solve(const Leaf& leaf, const RayPlanes* const* rays, const double* farthest, const Aim* aims, int n, Roots* const* found) const;
-    void prove(const Leaf& leaf, const RayPlanes& ray, const Aim& aim, double x, double y, Root& root) const;
+    void aim(const Leaf& leaf, const RayPacket& rays, const double* farthest, int n, AimPacket& out) const;
+    void frames(const Leaf& leaf, int n, NewtonPacket& p) const;
+    void solve(const Leaf& leaf, const RayPacket& rays, const double* farthest, const AimPacket& aim, int n, Roots* found) const;
+    double proved_error(const Leaf& leaf, const RayPacket& rays, const AimPacket& aim, const NewtonPacket& p, int lane) const;
     void search(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const;
     void settle(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const;
 
     Patch patch_;
+    const PolynomialCells* cells_;  // of the patch, or nullptr
+    const ExactKernel& kernel_;
     double size_, slack_;
     std::deque<Leaf> leaves_;
     mutable std::atomic<std::size_t> kept_{0};  // halves

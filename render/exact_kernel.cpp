@@ -1,0 +1,60 @@
+#include "exact_kernel.h"
+
+#include <limits>
+
+#include "isa_loops.h"
+
+namespace isoparm {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRegular = 0.9;     // of |I - Y J|, which must be below 1: far enough from it for rounding not to matter
+constexpr double kEdgeOn = 1e-9;     // det / (|a| |b|) below which rounding would count
+constexpr double kRounding = 1e-14;  // relative: far above that of a few operations in double
+
+namespace baseline {
+#define ISOPARM_LANES 2
+#include "exact_loops.h"
+#undef ISOPARM_LANES
+}  // namespace baseline
+
+#ifdef ISOPARM_ISA_LOOPS
+ISOPARM_BEGIN_AVX2
+namespace avx2 {
+#define ISOPARM_LANES 4
+#include "exact_loops.h"
+#undef ISOPARM_LANES
+}  // namespace avx2
+ISOPARM_END_ISA
+
+ISOPARM_BEGIN_AVX512
+namespace avx512 {
+#define ISOPARM_LANES 8
+#include "exact_loops.h"
+#undef ISOPARM_LANES
+}  // namespace avx512
+ISOPARM_END_ISA
+#endif
+
+}  // namespace
+
+const ExactKernel& exact_kernel(Isa isa) {
+#ifdef ISOPARM_ISA_LOOPS
+    if (isa == Isa::avx512) return avx512::kernel;
+    if (isa == Isa::avx2) return avx2::kernel;
+#endif
+    static_cast<void>(isa);
+    return baseline::kernel;
+}
+
+RayPlanes RayPacket::at(int lane) const {
+    const auto vector = [&](const double (*x)[lanes]) { return Point{x[0][lane], x[1][lane], x[2][lane]}; };
+    return {vector(origin), vector(direction), vector(n1), vector(n2)};
+}
+void RayPacket::put(int lane, const RayPlanes& ray) {
+    set(lane, ray.origin, ray.direction);
+    for (int k = 0; k < 3; ++k) n1[k][lane] = ray.n1[k], n2[k][lane] = ray.n2[k];
+}
+void RayPacket::set_planes(int n) { exact_kernel(chosen_isa()).planes(n, *this); }
+
+}  // namespace isoparm

@@ -1,0 +1,84 @@
+// exact_kernel.h -- the arithmetic of rays against the leaves of a patch, several rays side by side; internal to exact_patch.cpp.
+//
+// Each loop is compiled for several instruction sets, which give the same bits. A ray's numbers do not depend on those beside it.
+#pragma once
+#include <cstdint>
+
+#include "batch.h"
+#include "camera.h"
+
+namespace isoparm {
+
+/// A ray as the two planes through it.
+struct RayPlanes {
+    Point origin, direction, n1, n2;  // unit, at right angles
+};
+
+/// Rays side by side. Loops take whole groups of eight lanes: those beyond the last ray must hold some ray too.
+struct RayPacket {
+    static constexpr int lanes = 16;
+    alignas(64) double origin[3][lanes];
+    double direction[3][lanes], n1[3][lanes], n2[3][lanes];
+
+    void set(int lane, const Point& from, const Point& along) {
+        for (int k = 0; k < 3; ++k) origin[k][lane] = from[k], direction[k][lane] = along[k];
+    }
+    /// The same ray in all lanes, with its planes.
+    void set_all(const Point& from, const Point& along) {
+        for (int i = 0; i < lanes; ++i) set(i, from, along);
+        set_planes(lanes);
+    }
+    /// Sets n1 and n2 of the first n lanes.
+    void set_planes(int n);
+    RayPlanes at(int lane) const;
+    void put(int lane, const RayPlanes& ray);
+};
+
+/// S(u + x hu, v + y hv) = s + a x + b y, up to `bend`, for -1 <= x, y <= 1 in the domain.
+struct LeafMap {
+    Box box;
+    double u = 0, v = 0, hu = 0, hv = 0;
+    Point s, a, b;
+    double size_s = 0, size_a = 0, size_b = 0;  // their lengths
+    double bend = 0;                            // infinite where derivatives have no bound
+    double turn_u = 0, turn_v = 0;              // at least |S_u hu - a|, |S_v hv - b| anywhere, infinite likewise
+    bool slanted = false;                       // u + v = 1 runs through it
+};
+
+/// Rays against the linear map of a leaf.
+struct AimPacket {
+    enum Verdict : std::int64_t { miss, one, open };  // open: the leaf has to be halved
+    alignas(64) std::int64_t verdict[RayPacket::lanes];
+    double y11[RayPacket::lanes], y12[RayPacket::lanes], y21[RayPacket::lanes], y22[RayPacket::lanes];  // Y
+    double x[RayPacket::lanes], y[RayPacket::lanes];                                                    // where the linear map meets the ray
+    double wx[RayPacket::lanes], wy[RayPacket::lanes];  // weights of the norm max(|x| / wx, |y| / wy)
+    double q[RayPacket::lanes];                         // at least |I - Y J| in that norm
+    double slack[RayPacket::lanes];                     // of it: of the border,
+    double noise[RayPacket::lanes];                     // and what rounding may make of a step
+};
+
+/// Newton's method.
+struct NewtonPacket {
+    enum State : std::int64_t { active, found, gone, undecided };  // gone: the root lies beyond the leaf
+    alignas(64) std::int64_t state[RayPacket::lanes];
+    double x[RayPacket::lanes], y[RayPacket::lanes];    // of the leaf's map, and
+    double cx[RayPacket::lanes], cy[RayPacket::lanes];  // the nearest place in the leaf and the domain,
+    double u[RayPacket::lanes], v[RayPacket::lanes];    // which is S(u,v)
+    double before[RayPacket::lanes];                    // the last step
+    double distance[RayPacket::lanes];                  // of the point that belongs to (x,y), along the ray
+    double step_x[RayPacket::lanes], step_y[RayPacket::lanes];  // Y f there
+    double frame[9][RayPacket::lanes];                  // S, S_u, S_v at (u,v)
+};
+
+struct ExactKernel {
+    void (*planes)(int n, RayPacket& rays);
+    /// `border`: rays that pass the border of the leaf within it are not missed.
+    void (*aim)(const LeafMap& leaf, const RayPacket& rays, double border, const double* farthest, int n, AimPacket& out);
+    /// Begins where the linear map meets the rays; lanes that are not met once are `gone`.
+    void (*begin)(const LeafMap& leaf, const AimPacket& aim, int n, NewtonPacket& out);
+    /// One step with the frames; `newton` or the map that is proved to contract. Is any lane still active?
+    bool (*step)(const LeafMap& leaf, const RayPacket& rays, const AimPacket& aim, bool newton, int n, NewtonPacket& p);
+};
+const ExactKernel& exact_kernel(Isa isa);
+
+}  // namespace isoparm
