@@ -152,45 +152,42 @@ public:
 #endif
 };
 
-/// The least float that is not below x, and one more: what is as near as x must not be passed over.
-float far_enough(double x) {
-    const float most = std::numeric_limits<float>::infinity();
-    return std::nextafter(std::nextafter(static_cast<float>(x), most), most);
-}
+/// A float that is not below x >= 0, and a little more: what is as near as x must not be passed over.
+float far_enough(double x) { return static_cast<float>(x) * (1 + 0x1p-21f); }
 
-/// Rays of a callback in one leaf of a patch.
-struct Meeting {
-    int lane[EmbreeScene::packet];      // of the callback
-    unsigned ray[EmbreeScene::packet];  // of the query
-    Roots roots[EmbreeScene::packet];
-    int count = 0;
-
-    Meeting(const int* valid, RTCRayN* rays, unsigned n, const ExactPatch& patch, unsigned leaf, PatchRays& query) {
-        double farthest[EmbreeScene::packet];
-        bool in_place = n == EmbreeScene::packet;  // lanes are those of the query
-        for (unsigned i = 0; i < n; ++i) {
-            if (!valid[i]) continue;
-            lane[count] = static_cast<int>(i), ray[count] = RTCRayN_id(rays, n, i);
-            in_place = in_place && ray[count] == i;
-            farthest[count++] = RTCRayN_tfar(rays, n, i);
-        }
-        const KeepSubnormals keep;
-        if (in_place && count > EmbreeScene::packet / 2) {
-            std::uint32_t active = 0;
-            double far[EmbreeScene::packet] = {};
-            for (int k = 0; k < count; ++k) active |= 1u << lane[k], far[lane[k]] = farthest[k];
-            patch.meet(leaf, *query.rays, far, EmbreeScene::packet, active, roots);
-            for (int k = 0; k < count; ++k)
-                if (lane[k] != k) roots[k] = roots[lane[k]];
-        } else {
-            RayPacket some;
-            for (int k = 0; k < EmbreeScene::packet; ++k) some.put(k, query.rays->at(static_cast<int>(ray[k < count ? k : 0])));
-            for (int k = count; k < EmbreeScene::packet; ++k) farthest[k] = farthest[0];
-            patch.meet(leaf, some, farthest, count, ~0u, roots);
-        }
-        for (int k = 0; k < count; ++k) query.undecided[ray[k]] = query.undecided[ray[k]] || roots[k].undecided;
+/// What rays of a callback meet in one leaf of a patch: use(lane of the callback, ray of the query, roots).
+template <class Use> void meet_leaf(const int* valid, RTCRayN* rays, unsigned n, const ExactPatch& patch, unsigned leaf, PatchRays& query, Use use) {
+    int lane[EmbreeScene::packet], ray[EmbreeScene::packet], place[EmbreeScene::packet], count = 0;  // place: in what patch.meet() gets
+    double farthest[EmbreeScene::packet] = {};
+    bool in_place = n == EmbreeScene::packet;  // lanes are those of the query
+    for (unsigned i = 0; i < n; ++i) {
+        if (!valid[i]) continue;
+        lane[count] = static_cast<int>(i), ray[count] = static_cast<int>(RTCRayN_id(rays, n, i));
+        in_place = in_place && ray[count] == lane[count];
+        ++count;
     }
-};
+    in_place = in_place && count > EmbreeScene::packet / 2;
+    RayPacket some;
+    std::uint32_t active = 0;
+    for (int k = 0; k < count; ++k) {
+        place[k] = in_place ? lane[k] : k;
+        active |= 1u << place[k];
+        farthest[place[k]] = RTCRayN_tfar(rays, n, static_cast<unsigned>(lane[k]));
+        if (!in_place) some.put(k, query.rays->at(ray[k]));
+    }
+    if (!in_place)
+        for (int k = count; k % RayPacket::group != 0; ++k) some.put(k, query.rays->at(ray[0]));
+    Roots roots[EmbreeScene::packet];
+    {
+        const KeepSubnormals keep;
+        patch.meet(leaf, in_place ? *query.rays : some, farthest, in_place ? EmbreeScene::packet : count, active, roots);
+    }
+    for (int k = 0; k < count; ++k) {
+        const Roots& r = roots[place[k]];
+        if (r.undecided) query.undecided[ray[k]] = true;
+        if (r.count > 0) use(static_cast<unsigned>(lane[k]), static_cast<unsigned>(ray[k]), r);
+    }
+}
 
 Hit hit_of(const Root& root, std::uint32_t geometry, std::uint32_t leaf) {
     Hit h;
@@ -218,16 +215,14 @@ void intersect_leaf(const RTCIntersectFunctionNArguments* a) {
     const auto& geometry = *static_cast<const Geometry*>(a->geometryUserPtr);
     RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
     RTCHitN* hits = RTCRayHitN_HitN(a->rayhit, a->N);
-    const Meeting met(a->valid, rays, a->N, *geometry.patch, a->primID, *query.patches);
-    for (int k = 0; k < met.count; ++k)
-        for (int r = 0; r < met.roots[k].count; ++r) {
-            const Hit hit = hit_of(met.roots[k].root[r], geometry.id, a->primID);
-            const auto lane = static_cast<unsigned>(met.lane[k]);
+    meet_leaf(a->valid, rays, a->N, *geometry.patch, a->primID, *query.patches, [&](unsigned lane, unsigned ray, const Roots& roots) {
+        for (int r = 0; r < roots.count; ++r) {
+            const Hit hit = hit_of(roots.root[r], geometry.id, a->primID);
             if (geometry.opacity < 1 && query.patches->layers) {
                 query.patches->layers->push_back(hit);
                 continue;
             }
-            Hit& nearest = query.patches->nearest[met.ray[k]];
+            Hit& nearest = query.patches->nearest[ray];
             float& far = RTCRayN_tfar(rays, a->N, lane);
             if (hit.distance > static_cast<double>(far) || !nearer(hit, nearest)) continue;
             nearest = hit;
@@ -235,17 +230,18 @@ void intersect_leaf(const RTCIntersectFunctionNArguments* a) {
             RTCHitN_geomID(hits, a->N, lane) = geometry.id;
             RTCHitN_primID(hits, a->N, lane) = a->primID;
         }
+    });
 }
 
 void shadow_of_leaf(const RTCOccludedFunctionNArguments* a) {
     auto& query = *reinterpret_cast<Query*>(a->context);
     const auto& geometry = *static_cast<const Geometry*>(a->geometryUserPtr);
-    const Meeting met(a->valid, a->ray, a->N, *geometry.patch, a->primID, *query.patches);
-    for (int k = 0; k < met.count; ++k)
-        for (int r = 0; r < met.roots[k].count; ++r) {
+    meet_leaf(a->valid, a->ray, a->N, *geometry.patch, a->primID, *query.patches, [&](unsigned lane, unsigned, const Roots& roots) {
+        for (int r = 0; r < roots.count; ++r) {
             if (geometry.opacity < 1) *query.patches->transmittance *= sheet_lets_through(geometry, static_cast<ShadowQuery&>(query).shadows);
-            else RTCRayN_tfar(a->ray, a->N, static_cast<unsigned>(met.lane[k])) = -std::numeric_limits<float>::infinity();
+            else RTCRayN_tfar(a->ray, a->N, lane) = -std::numeric_limits<float>::infinity();
         }
+    });
 }
 
 }  // namespace

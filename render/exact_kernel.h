@@ -14,9 +14,9 @@ struct RayPlanes {
     Point origin, direction, n1, n2;  // unit, at right angles
 };
 
-/// Rays side by side. Loops take whole groups of eight lanes: those beyond the last ray must hold some ray too.
+/// Rays side by side. Loops take whole groups of lanes: those of the last group beyond the last ray must hold some ray too.
 struct RayPacket {
-    static constexpr int lanes = 16;
+    static constexpr int lanes = 16, group = 8;
     alignas(64) double origin[3][lanes];
     double direction[3][lanes], n1[3][lanes], n2[3][lanes];
 
@@ -52,7 +52,8 @@ struct AimPacket {
     double y11[RayPacket::lanes], y12[RayPacket::lanes], y21[RayPacket::lanes], y22[RayPacket::lanes];  // Y
     double x[RayPacket::lanes], y[RayPacket::lanes];                                                    // where the linear map meets the ray
     double wx[RayPacket::lanes], wy[RayPacket::lanes];  // weights of the norm max(|x| / wx, |y| / wy)
-    double q[RayPacket::lanes];                         // at least |I - Y J| in that norm
+    double per_wx[RayPacket::lanes], per_wy[RayPacket::lanes];  // 1 / wx, 1 / wy
+    double growth[RayPacket::lanes];                            // 1 / (1 - q), q at least |I - Y J| in that norm
     double slack[RayPacket::lanes];                     // of it: of the border,
     double noise[RayPacket::lanes];                     // and what rounding may make of a step
 };

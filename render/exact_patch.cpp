@@ -21,7 +21,6 @@ constexpr double kSlender = 6;         // sides of a leaf: the longer one is hal
 constexpr int kPlaces = 200;           // boxes that a ray may look at in one leaf
 constexpr double kPoint = 1e-9;        // boxes of this size, in sizes of the scene, are not halved again
 constexpr int kSteps = 24;
-constexpr int kGroup = 8;              // lanes that loops take at once
 constexpr double kRounding = 1e-14;    // relative: far above that of a few operations in double
 
 double length_of(const Vec3<Interval>& d) { return rounding::length_up(mag(d.x), mag(d.y), mag(d.z)); }
@@ -194,36 +193,47 @@ double ExactPatch::proved_error(const Leaf& leaf, const RayPacket& rays, const A
     }
     off += 1e-15 * (std::fabs(p.distance[lane]) + size + length(rays.at(lane).origin));
     mx += (std::fabs(aim.y11[lane]) + std::fabs(aim.y12[lane])) * off, my += (std::fabs(aim.y21[lane]) + std::fabs(aim.y22[lane])) * off;
-    const double within = std::max(mx / aim.wx[lane], my / aim.wy[lane]) / (1 - aim.q[lane]) * (1 + 1e-9);
+    const double within = std::max(mx / aim.wx[lane], my / aim.wy[lane]) * aim.growth[lane] * (1 + 1e-9);
     const double error = within * (aim.wx[lane] * (leaf.size_a + leaf.turn_u) + aim.wy[lane] * (leaf.size_b + leaf.turn_v));
     return error < 1e-6 * size_ ? error : kInfinity;
 }
 
-/// Halves what is neither missed nor met once.
-void ExactPatch::search(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const {
-    std::vector<const Leaf*> open{&leaf};
-    std::vector<std::unique_ptr<const Leaf>> kept;
-    RayPacket one;
-    double far[kGroup];
-    for (int i = 0; i < kGroup; ++i) one.put(i, ray), far[i] = farthest;
+/// Finds the roots of rays that have one at most in the leaf; those that can have more.
+ExactPatch::Lanes ExactPatch::visit(const Leaf& leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const {
     AimPacket to;
-    for (int places = 0; !open.empty();) {
-        const Leaf& at = *open.back();
+    aim(leaf, rays, farthest, n, to);
+    Lanes open = 0;
+    bool any = false;
+    for (int i = 0; i < packet; ++i) {
+        if (!(active >> i & 1)) to.verdict[i] = AimPacket::miss;
+        open |= Lanes(to.verdict[i] == AimPacket::open) << i;
+        any = any || to.verdict[i] == AimPacket::one;
+    }
+    if (any) solve(leaf, rays, farthest, to, n, found);
+    return open;
+}
+
+/// Halves what is neither missed nor met once. Each ray sees the halves that it would see alone, in the same order.
+void ExactPatch::search(const Leaf& leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const {
+    std::vector<std::pair<const Leaf*, Lanes>> open{{&leaf, active}};
+    std::vector<std::unique_ptr<const Leaf>> kept;
+    int places[packet] = {};
+    while (!open.empty()) {
+        const auto [at, lanes] = open.back();
         open.pop_back();
-        if (places > kPlaces || (std::isfinite(at.bend) && at.size_a + at.size_b + at.bend < kPoint * size_) || at.size_a + at.size_b < 1e-12 * at.size_s ||
-            std::max(at.hu, at.hv) < 1e-15 * std::max({1.0, std::fabs(at.u), std::fabs(at.v)})) {
-            settle(at, ray, farthest, found);
-            continue;
+        const bool point = (std::isfinite(at->bend) && at->size_a + at->size_b + at->bend < kPoint * size_) || at->size_a + at->size_b < 1e-12 * at->size_s ||
+                           std::max(at->hu, at->hv) < 1e-15 * std::max({1.0, std::fabs(at->u), std::fabs(at->v)});
+        Lanes more = 0;
+        for (int i = 0; i < n; ++i) {
+            if (!(lanes >> i & 1)) continue;
+            if (point || places[i] > kPlaces) settle(*at, rays.at(i), farthest[i], found[i]);
+            else more |= Lanes(1) << i;
         }
-        for (int k = 0; k < 2; ++k) {
-            const Leaf* part = half_of(at, k, kept);
+        for (int k = 0; k < 2 && more; ++k) {
+            const Leaf* part = half_of(*at, k, kept);
             if (!part) continue;
-            ++places;
-            aim(*part, one, far, 1, to);
-            if (to.verdict[0] == AimPacket::open) open.push_back(part);
-            if (to.verdict[0] != AimPacket::one) continue;
-            std::fill_n(to.verdict + 1, kGroup - 1, AimPacket::miss);
-            solve(*part, one, far, to, 1, &found);
+            for (int i = 0; i < n; ++i) places[i] += more >> i & 1;
+            if (const Lanes rest = visit(*part, rays, farthest, n, more, found)) open.emplace_back(part, rest);
         }
     }
 }
@@ -260,19 +270,10 @@ void ExactPatch::settle(const Leaf& leaf, const RayPlanes& ray, double farthest,
     found.root[found.count++] = root;
 }
 
-void ExactPatch::meet(std::size_t which, const RayPacket& rays, const double* farthest, int n, std::uint32_t active, Roots* found) const {
+void ExactPatch::meet(std::size_t which, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const {
+    for (int i = 0; i < n; ++i) found[i].count = 0, found[i].undecided = false;
     const Leaf& leaf = leaves_[which];
-    AimPacket to;
-    aim(leaf, rays, farthest, n, to);
-    bool any = false;
-    for (int i = 0; i < packet; ++i) {
-        const bool asked = i < n && (active >> i & 1);
-        if (i < n) found[i].count = 0, found[i].undecided = false;
-        if (asked && to.verdict[i] == AimPacket::open) search(leaf, rays.at(i), farthest[i], found[i]);
-        if (!asked) to.verdict[i] = AimPacket::miss;
-        any = any || to.verdict[i] == AimPacket::one;
-    }
-    if (any) solve(leaf, rays, farthest, to, n, found);
+    if (const Lanes open = visit(leaf, rays, farthest, n, active & ((Lanes(2) << (n - 1)) - 1), found)) search(leaf, rays, farthest, n, open, found);
 }
 
 }  // namespace isoparm

@@ -37,6 +37,7 @@ struct Roots {
 class ExactPatch {
 public:
     static constexpr int packet = RayPacket::lanes;
+    using Lanes = std::uint32_t;  // a bit for each ray of a packet
 
     /// `size`: diagonal of the scene. A ray counts as meeting the border of the patch where it passes within slack(size) of it, so that
     /// nothing shines through between neighbours. Refers to the patch. Throws Error(input) where the patch cannot be bounded.
@@ -48,7 +49,7 @@ public:
     Bounds box(std::size_t leaf) const { return leaves_[leaf].values; }
     /// Where rays meet a leaf, at distances from 0 to farthest[i]: those of the first n lanes that have a bit in `active`. `farthest` has
     /// numbers for all lanes.
-    void meet(std::size_t leaf, const RayPacket& rays, const double* farthest, int n, std::uint32_t active, Roots* found) const;
+    void meet(std::size_t leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const;
 
 private:
     struct Leaf : LeafMap {
@@ -73,7 +74,8 @@ private:
     void frames(const Leaf& leaf, int n, NewtonPacket& p) const;
     void solve(const Leaf& leaf, const RayPacket& rays, const double* farthest, const AimPacket& aim, int n, Roots* found) const;
     double proved_error(const Leaf& leaf, const RayPacket& rays, const AimPacket& aim, const NewtonPacket& p, int lane) const;
-    void search(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const;
+    Lanes visit(const Leaf& leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const;
+    void search(const Leaf& leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const;
     void settle(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const;
 
     Patch patch_;
