@@ -249,6 +249,7 @@ void shadow_of_leaf(const RTCOccludedFunctionNArguments* a) {
 struct EmbreeScene::State {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
+    const ExactKernel& kernel = exact_kernel(chosen_isa());
     Point centre;
     double radius = 0, rounding = 0;
     bool translucent = false;
@@ -290,28 +291,22 @@ struct EmbreeScene::State {
         check("taking over geometry");
         return data.id;
     }
-    /// Where the ray enters the ball around the scene: far eyes must not cost float32 its digits.
-    double entry(const Ray& ray) const {
-        const Point o = ray.origin - centre;
-        const double nearest = -dot(o, ray.direction);
-        if (dot(o, o) <= radius * radius) return 0;
-        return std::max(0.0, nearest - 1.01 * radius);
-    }
-    void fill(const Ray& ray, double start, RTCRay& r) const {
-        const Point o = ray.origin - centre + start * ray.direction;
-        r.org_x = static_cast<float>(o.x), r.org_y = static_cast<float>(o.y), r.org_z = static_cast<float>(o.z);
-        r.dir_x = static_cast<float>(ray.direction.x), r.dir_y = static_cast<float>(ray.direction.y),
-        r.dir_z = static_cast<float>(ray.direction.z);
-        r.tnear = 0, r.tfar = static_cast<float>(std::max(0.0, ray.reach - start)), r.time = 0;
+    /// A ray from where it enters the scene, which is returned; with its planes for patches.
+    double enter(const Ray& ray, RTCRay& r, RayPacket& planes) const {
+        float out[7][RayPacket::group];
+        double start[RayPacket::group];
+        kernel.enter(&ray, 1, RayPacket::group, centre, radius, start, {out[0], out[1], out[2], out[3], out[4], out[5], out[6]}, patches ? &planes : nullptr);
+        if (patches) kernel.planes(RayPacket::group, planes);
+        r.org_x = out[0][0], r.org_y = out[1][0], r.org_z = out[2][0], r.dir_x = out[3][0], r.dir_y = out[4][0], r.dir_z = out[5][0];
+        r.tnear = 0, r.tfar = out[6][0], r.time = 0;
         r.mask = ~0u, r.id = 0, r.flags = 0;
+        return start[0];
     }
-    void fill(const Ray& ray, double start, RTCRay16& r, int i) const {
-        RTCRay one;
-        fill(ray, start, one);
-        r.org_x[i] = one.org_x, r.org_y[i] = one.org_y, r.org_z[i] = one.org_z;
-        r.dir_x[i] = one.dir_x, r.dir_y[i] = one.dir_y, r.dir_z[i] = one.dir_z;
-        r.tnear[i] = one.tnear, r.tfar[i] = one.tfar, r.time[i] = 0;
-        r.mask[i] = one.mask, r.id[i] = static_cast<unsigned>(i), r.flags[i] = 0;
+    /// The same of a packet; lanes that are not active are copies of one that is.
+    void enter(const Ray* rays, std::uint32_t active, RTCRay16& r, double* start, RayPacket& planes) const {
+        kernel.enter(rays, active, packet, centre, radius, start, {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y, r.dir_z, r.tfar}, patches ? &planes : nullptr);
+        if (patches) kernel.planes(packet, planes);
+        for (unsigned i = 0; i < packet; ++i) r.tnear[i] = 0, r.time[i] = 0, r.mask[i] = ~0u, r.id[i] = i, r.flags[i] = 0;
     }
     /// Adds to count().
     void note(const bool* open, std::uint64_t n) const {
@@ -332,14 +327,12 @@ struct EmbreeScene::State {
         ShadowQuery query;
         query.shadows = shadows;
         RTCRay r;
-        const double start = entry(ray);
-        fill(ray, start, r);
+        RayPacket planes;
+        enter(ray, r, planes);
         bool open = false;
         PatchRays to_patches;
-        RayPacket packet;
         if (patches) {
-            packet.set_all(ray.origin + start * ray.direction, ray.direction);
-            to_patches.rays = &packet, to_patches.undecided = &open, to_patches.transmittance = &query.transmittance;
+            to_patches.rays = &planes, to_patches.undecided = &open, to_patches.transmittance = &query.transmittance;
             query.patches = &to_patches;
         }
         occluded_1(scene, query, &r);
@@ -452,45 +445,28 @@ void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
     alignas(64) RTCRayHit16 r;
     alignas(64) int valid[packet];
     double start[packet];
+    RayPacket planes;
+    s.enter(rays, (2u << (n - 1)) - 1, r.ray, start, planes);
     for (int i = 0; i < packet; ++i) {
         valid[i] = i < n ? -1 : 0;
-        const Ray& ray = rays[i < n ? i : 0];
-        s.fill(ray, start[i] = s.entry(ray), r.ray, i);
         r.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
-    RayPacket planes;
-    Hit nearest[packet];
+    if (s.patches) std::fill_n(hits, n, Hit{});
     bool open[packet] = {};
-    PatchRays to_patches{&planes, nearest, open};
+    PatchRays to_patches{&planes, hits, open};
     Query query(true);
-    if (s.patches) {
-        for (int i = 0; i < packet; ++i) {
-            const int k = i < n ? i : 0;
-            planes.set(i, rays[k].origin + start[k] * rays[k].direction, rays[k].direction);
-        }
-        planes.set_planes(packet);
-        query.patches = &to_patches;
-    }
+    if (s.patches) query.patches = &to_patches;
     {
         const FlushSubnormals flush;
         intersect_16(valid, s.scene, query, &r);
     }
     s.note(open, static_cast<std::uint64_t>(n));
     for (int i = 0; i < n; ++i) {
-        Hit& h = hits[i] = Hit{};
-        if (r.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        if (s.geometries[r.hit.geomID[i]].patch) {
-            h = nearest[i];
-            h.distance += start[i];
-            continue;
-        }
-        h.distance = start[i] + static_cast<double>(r.ray.tfar[i]);
-        h.geometry = r.hit.geomID[i];
-        h.primitive = r.hit.primID[i];
-        h.u = r.hit.u[i];
-        h.v = r.hit.v[i];
-        h.normal = {r.hit.Ng_x[i], r.hit.Ng_y[i], r.hit.Ng_z[i]};
+        const std::uint32_t geometry = r.hit.geomID[i];
+        if (geometry == RTC_INVALID_GEOMETRY_ID) hits[i] = Hit{};
+        else if (s.patches && s.geometries[geometry].patch) hits[i].distance += start[i];
+        else hits[i] = {start[i] + static_cast<double>(r.ray.tfar[i]), geometry, r.hit.primID[i], r.hit.u[i], r.hit.v[i], {r.hit.Ng_x[i], r.hit.Ng_y[i], r.hit.Ng_z[i]}, 0};
     }
 }
 
@@ -511,16 +487,14 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
     LayerQuery query;
     query.hits = &hits;
     RTCRayHit r;
-    const double start = s.entry(ray);
-    s.fill(ray, start, r.ray);
+    RayPacket planes;
+    const double start = s.enter(ray, r.ray, planes);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     Hit nearest;
     bool open = false;
     PatchRays to_patches;
-    RayPacket planes;
     if (s.patches) {
-        planes.set_all(ray.origin + start * ray.direction, ray.direction);
         to_patches.rays = &planes, to_patches.nearest = &nearest, to_patches.undecided = &open, to_patches.layers = &hits;
         query.patches = &to_patches;
     }
@@ -568,24 +542,14 @@ void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, do
     }
     alignas(64) RTCRay16 r;
     alignas(64) int valid[packet];
-    for (int i = 0; i < packet; ++i) {
-        const bool used = i < n && (active >> i & 1);
-        valid[i] = used ? -1 : 0;
-        const Ray& ray = rays[used ? i : std::countr_zero(active)];
-        s.fill(ray, s.entry(ray), r, i);
-    }
-    Query query;
+    double start[packet];
     RayPacket planes;
+    s.enter(rays, active, r, start, planes);
+    for (int i = 0; i < packet; ++i) valid[i] = i < n && (active >> i & 1) ? -1 : 0;
+    Query query;
     bool open[packet] = {};
     PatchRays to_patches{&planes, nullptr, open};
-    if (s.patches) {
-        for (int i = 0; i < packet; ++i) {
-            const Ray& ray = rays[valid[i] ? i : std::countr_zero(active)];
-            planes.set(i, ray.origin + s.entry(ray) * ray.direction, ray.direction);
-        }
-        planes.set_planes(packet);
-        query.patches = &to_patches;
-    }
+    if (s.patches) query.patches = &to_patches;
     occluded_16(valid, s.scene, query, &r);
     s.note(open, static_cast<std::uint64_t>(std::popcount(active)));
     for (int i = 0; i < n; ++i)

@@ -52,9 +52,8 @@ RayPlanes RayPacket::at(int lane) const {
     return {vector(origin), vector(direction), vector(n1), vector(n2)};
 }
 void RayPacket::put(int lane, const RayPlanes& ray) {
-    set(lane, ray.origin, ray.direction);
-    for (int k = 0; k < 3; ++k) n1[k][lane] = ray.n1[k], n2[k][lane] = ray.n2[k];
+    for (int k = 0; k < 3; ++k)
+        origin[k][lane] = ray.origin[k], direction[k][lane] = ray.direction[k], n1[k][lane] = ray.n1[k], n2[k][lane] = ray.n2[k];
 }
-void RayPacket::set_planes(int n) { exact_kernel(chosen_isa()).planes(n, *this); }
 
 }  // namespace isoparm

@@ -20,16 +20,6 @@ struct RayPacket {
     alignas(64) double origin[3][lanes];
     double direction[3][lanes], n1[3][lanes], n2[3][lanes];
 
-    void set(int lane, const Point& from, const Point& along) {
-        for (int k = 0; k < 3; ++k) origin[k][lane] = from[k], direction[k][lane] = along[k];
-    }
-    /// The same ray in all lanes, with its planes.
-    void set_all(const Point& from, const Point& along) {
-        for (int i = 0; i < lanes; ++i) set(i, from, along);
-        set_planes(lanes);
-    }
-    /// Sets n1 and n2 of the first n lanes.
-    void set_planes(int n);
     RayPlanes at(int lane) const;
     void put(int lane, const RayPlanes& ray);
 };
@@ -71,7 +61,17 @@ struct NewtonPacket {
     double frame[9][RayPacket::lanes];                  // S, S_u, S_v at (u,v)
 };
 
+/// Where float32 numbers of rays go: lanes of each.
+struct FloatRays {
+    float *org_x, *org_y, *org_z, *dir_x, *dir_y, *dir_z, *tfar;
+};
+
 struct ExactKernel {
+    /// Rays as Embree takes them: relative to `centre`, and from where they enter the ball around the scene, at start[i], as far eyes must not
+    /// cost float32 its digits. Sets `lanes` of `start`, of `to` and, where given, of origins and directions of `packet`: whole groups. Those that have
+    /// no bit in `active`, which is not 0, get the first ray that has one.
+    void (*enter)(const Ray* rays, std::uint32_t active, int lanes, const Point& centre, double radius, double* start, const FloatRays& to, RayPacket* packet);
+    /// Sets n1 and n2 of the first n lanes.
     void (*planes)(int n, RayPacket& rays);
     /// `border`: rays that pass the border of the leaf within it are not missed.
     void (*aim)(const LeafMap& leaf, const RayPacket& rays, double border, const double* farthest, int n, AimPacket& out);

@@ -35,6 +35,33 @@ inline V3 load(const double (*d)[RayPacket::lanes], int i) { return {load(&d[0][
 inline V dot(const V3& d, const V3& e) { return d.x * e.x + d.y * e.y + d.z * e.z; }
 inline V dot(const V3& d, const Point& e) { return d.x * e.x + d.y * e.y + d.z * e.z; }
 
+typedef float F __attribute__((vector_size(kLanes * sizeof(float))));
+typedef float InFloats __attribute__((vector_size(kLanes * sizeof(float)), aligned(alignof(float)), may_alias));
+inline void store(const V& x, float* to) { *reinterpret_cast<InFloats*>(to) = __builtin_convertvector(x, F); }
+
+inline void enter(const Ray* rays, std::uint32_t active, int lanes, const Point& centre, double radius, double* start, const FloatRays& to, RayPacket* packet) {
+    const int first = __builtin_ctz(active);
+    for (int i = 0; i < lanes; i += kLanes) {
+        V3 origin, d;
+        V reach;
+        for (int k = 0; k < kLanes; ++k) {
+            const Ray& ray = rays[active >> (i + k) & 1 ? i + k : first];
+            origin.x[k] = ray.origin.x, origin.y[k] = ray.origin.y, origin.z[k] = ray.origin.z;
+            d.x[k] = ray.direction.x, d.y[k] = ray.direction.y, d.z[k] = ray.direction.z;
+            reach[k] = ray.reach;
+        }
+        const V3 o{origin.x - centre.x, origin.y - centre.y, origin.z - centre.z};
+        const V before = -dot(o, d) - 1.01 * radius, s = dot(o, o) <= radius * radius ? V{} : larger(before, V{});
+        store(s, &start[i]);
+        store(o.x + s * d.x, to.org_x + i), store(o.y + s * d.y, to.org_y + i), store(o.z + s * d.z, to.org_z + i);
+        store(d.x, to.dir_x + i), store(d.y, to.dir_y + i), store(d.z, to.dir_z + i);
+        store(larger(reach - s, V{}), to.tfar + i);
+        if (!packet) continue;
+        store(origin.x + s * d.x, &packet->origin[0][i]), store(origin.y + s * d.y, &packet->origin[1][i]), store(origin.z + s * d.z, &packet->origin[2][i]);
+        store(d.x, &packet->direction[0][i]), store(d.y, &packet->direction[1][i]), store(d.z, &packet->direction[2][i]);
+    }
+}
+
 /// Duff et al., JCGT 2017.
 inline void planes(int n, RayPacket& r) {
     for (int i = 0; i < n; i += kLanes) {
@@ -127,4 +154,4 @@ inline bool step(const LeafMap& l, const RayPacket& r, const AimPacket& aim, boo
     return any(left);
 }
 
-constexpr ExactKernel kernel{planes, aim, begin, step};
+constexpr ExactKernel kernel{enter, planes, aim, begin, step};
