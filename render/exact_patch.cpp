@@ -20,6 +20,7 @@ constexpr std::size_t kMostKept = 100'000;  // and how many of a patch: 30 MB
 constexpr double kSlender = 6;         // sides of a leaf: the longer one is halved beyond this
 constexpr int kPlaces = 200;           // boxes that a ray may look at in one leaf
 constexpr double kPoint = 1e-9;        // boxes of this size, in sizes of the scene, are not halved again
+constexpr double kSharp = 5e-12;       // proved errors, in sizes of the scene, that need not be sharper
 constexpr int kSteps = 24;
 constexpr double kRounding = 1e-14;    // relative: far above that of a few operations in double
 
@@ -177,24 +178,24 @@ void ExactPatch::solve(const Leaf& leaf, const RayPacket& rays, const double* fa
 }
 
 /// Krawczyk's operator about what Newton found: the root is no farther than this from S(u,v). S(u,v) is known to the error that is proved of
-/// the patch's polynomials, or enclosed.
+/// the patch's polynomials; where that does not say enough, as for grazing rays, it is enclosed.
 double ExactPatch::proved_error(const Leaf& leaf, const RayPacket& rays, const AimPacket& aim, const NewtonPacket& p, int lane) const {
-    double mx = std::fabs(p.step_x[lane]), my = std::fabs(p.step_y[lane]), off = 0, size = 0;
+    const auto distance_to_root = [&](double step_x, double step_y, double off) {
+        const double mx = std::fabs(step_x) + (std::fabs(aim.y11[lane]) + std::fabs(aim.y12[lane])) * off;
+        const double my = std::fabs(step_y) + (std::fabs(aim.y21[lane]) + std::fabs(aim.y22[lane])) * off;
+        const double within = std::max(mx / aim.wx[lane], my / aim.wy[lane]) * aim.growth[lane] * (1 + 1e-9);
+        return within * (aim.wx[lane] * (leaf.size_a + leaf.turn_u) + aim.wy[lane] * (leaf.size_b + leaf.turn_v));
+    };
+    const RayPlanes ray = rays.at(lane);
+    const double rounding = 1e-15 * (std::fabs(p.distance[lane]) + leaf.size_s + leaf.size_a + leaf.size_b + leaf.bend + length(ray.origin));
     if (cells_) {
-        const Point s{p.frame[0][lane], p.frame[1][lane], p.frame[2][lane]};
-        off = 1.7320509 * cells_->error().position, size = length(s);
-    } else {
-        const Vec3<Interval> s = patch_.enclose_point(p.u[lane], p.v[lane]);
-        const RayPlanes ray = rays.at(lane);
-        const Point to = middle(s) - ray.origin + (p.x[lane] - p.cx[lane]) * leaf.a + (p.y[lane] - p.cy[lane]) * leaf.b;
-        const double f1 = dot(ray.n1, to), f2 = dot(ray.n2, to);
-        mx = std::fabs(aim.y11[lane] * f1 + aim.y12[lane] * f2), my = std::fabs(aim.y21[lane] * f1 + aim.y22[lane] * f2);
-        off = radius(s), size = length(middle(s));
+        const double error = distance_to_root(p.step_x[lane], p.step_y[lane], 1.7320509 * cells_->error().position + rounding);
+        if (error < kSharp * size_) return error;
     }
-    off += 1e-15 * (std::fabs(p.distance[lane]) + size + length(rays.at(lane).origin));
-    mx += (std::fabs(aim.y11[lane]) + std::fabs(aim.y12[lane])) * off, my += (std::fabs(aim.y21[lane]) + std::fabs(aim.y22[lane])) * off;
-    const double within = std::max(mx / aim.wx[lane], my / aim.wy[lane]) * aim.growth[lane] * (1 + 1e-9);
-    const double error = within * (aim.wx[lane] * (leaf.size_a + leaf.turn_u) + aim.wy[lane] * (leaf.size_b + leaf.turn_v));
+    const Vec3<Interval> s = patch_.enclose_point(p.u[lane], p.v[lane]);
+    const Point to = middle(s) - ray.origin + (p.x[lane] - p.cx[lane]) * leaf.a + (p.y[lane] - p.cy[lane]) * leaf.b;
+    const double f1 = dot(ray.n1, to), f2 = dot(ray.n2, to);
+    const double error = distance_to_root(aim.y11[lane] * f1 + aim.y12[lane] * f2, aim.y21[lane] * f1 + aim.y22[lane] * f2, radius(s) + rounding);
     return error < 1e-6 * size_ ? error : kInfinity;
 }
 

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <random>
 
@@ -240,6 +241,78 @@ TEST(Exact, DepthsOfMeshesComeCloserAsTheirErrorSays) {
         before = different;
     }
     EXPECT_LE(before, 1);  // pixels, of the silhouette
+}
+
+// Rays of a packet, some of them grazing, are computed side by side and halve leaves together.
+TEST(Exact, ARayIsTheSameAloneAndInAnyPacket) {
+    const Scene scene = shipped("teapot");
+    const TracedScene traced = build_traced_scene(scene, 1e-1, {}, true);
+    Rays random(7);
+    std::vector<Ray> rays;
+    for (int k = 0; k < 40 * EmbreeScene::packet; ++k) rays.push_back(random.towards(random.in_box(1.5) + Point(0, 0, 1.5)));
+    int hits = 0;
+    for (std::size_t first = 0; first < rays.size(); first += EmbreeScene::packet) {
+        Hit together[EmbreeScene::packet];
+        traced.embree->intersect(&rays[first], EmbreeScene::packet, together);
+        for (int n : {1, 5, 9})
+            for (int from = 0; from + n <= EmbreeScene::packet; from += n) {
+                Hit some[EmbreeScene::packet];
+                traced.embree->intersect(&rays[first + from], n, some);
+                for (int i = 0; i < n; ++i) {
+                    const Hit &a = together[from + i], &b = some[i];
+                    ASSERT_TRUE(a.distance == b.distance && a.geometry == b.geometry && a.primitive == b.primitive && a.u == b.u && a.v == b.v && a.error == b.error)
+                        << "ray " << first + from + i << " in a packet of " << n;
+                    hits += a.found();
+                }
+            }
+    }
+    EXPECT_GT(hits, 600);
+}
+
+TEST(Exact, EveryInstructionSetGivesTheSameBits) {
+    const Scene scene = shipped("teapot");
+    const TracedScene traced = build_traced_scene(scene, 1e-1, {}, true);
+    Rays random(8);
+    for (int k = 0; k < 200; ++k) {
+        Ray rays[RayPacket::lanes];
+        for (Ray& r : rays) r = random.towards(random.in_box(1.5) + Point(0, 0, 1.5));
+        const double size = bounding_box(scene).diagonal();
+        LeafMap leaf;
+        leaf.box = {{0, 1}, {0, 1}}, leaf.u = leaf.v = leaf.hu = leaf.hv = 0.5;
+        leaf.s = random.in_box(1), leaf.a = random.in_box(1), leaf.b = random.in_box(1);
+        leaf.bend = leaf.turn_u = leaf.turn_v = random.number(0, 0.3), leaf.slanted = k % 2 == 1;
+        leaf.size_s = length(leaf.s), leaf.size_a = length(leaf.a), leaf.size_b = length(leaf.b);
+        std::vector<double> expected;
+        for (const Isa isa : all_isas) {
+            if (!runs(isa)) continue;
+            const ExactKernel& kernel = exact_kernel(isa);
+            RayPacket packet;
+            double start[RayPacket::lanes], farthest[RayPacket::lanes];
+            float single[7][RayPacket::lanes];
+            kernel.enter(rays, 0xfffb, RayPacket::lanes, {0, 0, 1.5}, size, start, {single[0], single[1], single[2], single[3], single[4], single[5], single[6]}, &packet);
+            kernel.planes(RayPacket::lanes, packet);
+            std::fill(std::begin(farthest), std::end(farthest), 100.0);
+            AimPacket aim{};
+            kernel.aim(leaf, packet, 1e-9, farthest, RayPacket::lanes, aim);
+            NewtonPacket newton{};
+            kernel.begin(leaf, aim, RayPacket::lanes, newton);
+            for (int axis = 0; axis < 3; ++axis)
+                for (int i = 0; i < RayPacket::lanes; ++i)
+                    newton.frame[axis][i] = leaf.s[axis] + newton.cx[i] * leaf.a[axis] + newton.cy[i] * leaf.b[axis], newton.frame[3 + axis][i] = 2 * leaf.a[axis],
+                    newton.frame[6 + axis][i] = 2 * leaf.b[axis];
+            kernel.step(leaf, packet, aim, true, RayPacket::lanes, newton);
+            std::vector<double> all(std::begin(start), std::end(start));
+            for (const auto& row : single) all.insert(all.end(), std::begin(row), std::end(row));
+            for (int i = 0; i < RayPacket::lanes; ++i) {
+                all.insert(all.end(), {double(aim.verdict[i]), double(newton.state[i])});
+                if (aim.verdict[i] != AimPacket::miss) all.insert(all.end(), {aim.x[i], aim.y[i], aim.growth[i], aim.noise[i]});
+                if (aim.verdict[i] == AimPacket::one) all.insert(all.end(), {newton.x[i], newton.y[i], newton.u[i], newton.v[i], newton.distance[i]});
+            }
+            if (expected.empty()) expected = all;
+            ASSERT_EQ(all.size(), expected.size());
+            EXPECT_EQ(std::memcmp(all.data(), expected.data(), all.size() * sizeof(double)), 0) << to_text(isa) << ", packet " << k;
+        }
+    }
 }
 
 TEST(ExactThreads, PicturesAreTheSameForEveryNumberAndInCrops) {
