@@ -50,8 +50,9 @@ const Format& format_of(const std::string& path) {
 // ---- bytes --------------------------------------------------------------------------------------------------------
 std::uint8_t to_byte(double x) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(x, 0.0, 1.0))); }
 std::uint8_t srgb_byte(double linear) {
+    if (linear >= 1) return 255;
     const double x = linear > 0 ? linear : 0;  // NaN is black
-    return to_byte(x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(std::min(x, 1.0), 1 / 2.4) - 0.055);
+    return to_byte(x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055);
 }
 
 bool opaque(const Image& image) {
