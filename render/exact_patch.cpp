@@ -251,7 +251,8 @@ void ExactPatch::prove(const Leaf& leaf, const RayPlanes& ray, const Aim& aim, d
 void ExactPatch::search(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const {
     std::vector<const Leaf*> open{&leaf};
     std::vector<std::unique_ptr<const Leaf>> kept;
-    for (int places = 0; !open.empty();) {
+    int places = 0;
+    while (!open.empty()) {
         const Leaf& at = *open.back();
         open.pop_back();
         if (places > kPlaces || (std::isfinite(at.bend) && length(at.a) + length(at.b) + at.bend < kPoint * size_) || length(at.a) + length(at.b) < 1e-12 * length(at.s) ||
@@ -270,6 +271,7 @@ void ExactPatch::search(const Leaf& leaf, const RayPlanes& ray, double farthest,
             if (a.verdict == Aim::Verdict::open) open.push_back(part);
         }
     }
+    halved_.fetch_add(static_cast<std::uint64_t>(places), std::memory_order_relaxed);
 }
 
 /// What is left of a search: a hit, though not a proved one, where the patch comes as good as up to the ray in this box; undecided in any

@@ -53,6 +53,8 @@ public:
     std::size_t leaves() const { return leaves_.size(); }
     /// Holds the patch over that leaf.
     Bounds box(std::size_t leaf) const { return leaves_[leaf].values; }
+    /// How many boxes were halved for single rays until now: what takes long.
+    std::uint64_t halved() const { return halved_.load(std::memory_order_relaxed); }
     /// Where n <= packet rays meet a leaf, at distances from 0 to farthest[i].
     void meet(std::size_t leaf, const RayPlanes* const* rays, const double* farthest, int n, Roots* found) const;
 
@@ -101,6 +103,7 @@ private:
     double size_, slack_;
     std::deque<Leaf> leaves_;
     mutable std::atomic<std::size_t> kept_{0};  // halves
+    mutable std::atomic<std::uint64_t> halved_{0};
 };
 
 }  // namespace isoparm
