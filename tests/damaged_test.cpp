@@ -173,7 +173,9 @@ TEST(DamagedImages, CutOffAreNeverEqual) {
             check_image_end(read_image_header(there, size, good).format, size, [&](std::uint64_t at, std::size_t n) { return std::string(at < size ? there.substr(at, n) : ""); }, good);
         };
         look_at(bytes.size());
-        for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_THROW(look_at(size), Error) << type << " " << size;
+        const std::size_t old = type == "tga" ? 18 + 16 * 16 * 3 : 0;  // without a footer, but with all pixels: a file of the format's first version
+        for (std::size_t size = 0; size < bytes.size(); ++size)
+            if (size != old || old == 0) EXPECT_THROW(look_at(size), Error) << type << " " << size;
         if (type == "jpg") continue;
         write_all(cut, bytes.substr(0, bytes.size() - 1));
         test::expect("diff " + good + " " + cut, 4, "damaged or cut off");
