@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tests/long/valgrind.sh [PROGRAM]: the program's commands under valgrind's memcheck, on small scenes: reads of what was never set or no longer is there, and
-# writes beyond. Half an hour on an idle core. Any finding counts, in libraries too, but for those of valgrind.supp. Leaks are the address sanitizer's.
+# writes beyond. Half an hour on an idle core. Any finding counts, in libraries too. Leaks are the address sanitizer's.
 # PROGRAM: another than build/release/isoparm. Valgrind 3.19 knows no AVX-512 and says so to programs: they take AVX2, as Embree does.
 # The last line is "N passed, M failed".
 set -euo pipefail
@@ -18,7 +18,7 @@ passed=0 failed=0
 try() {
     local expected=$1 code=0 start=$SECONDS
     shift
-    valgrind -q --error-exitcode=99 --leak-check=no --suppressions="$root/tests/long/valgrind.supp" --log-file=log "$program" "$@" --quiet --threads 2 >out 2>err </dev/null || code=$?
+    valgrind -q --error-exitcode=99 --leak-check=no --log-file=log "$program" "$@" --quiet --threads 2 >out 2>err </dev/null || code=$?
     if ((code == expected)) && [[ ! -s log ]]; then
         passed=$((passed + 1))
         printf 'passed  %4d s  %s\n' $((SECONDS - start)) "$*"
