@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "error.h"
@@ -237,6 +238,7 @@ void ExactPatch::search(const Leaf& leaf, const RayPacket& rays, const double* f
             if (const Lanes rest = visit(*part, rays, farthest, n, more, found)) open.emplace_back(part, rest);
         }
     }
+    halved_.fetch_add(std::accumulate(places, places + n, std::uint64_t(0)), std::memory_order_relaxed);
 }
 
 /// What is left of a search: a hit, though not a proved one, where the patch comes as good as up to the ray in this box; undecided in any

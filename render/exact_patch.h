@@ -47,6 +47,8 @@ public:
     std::size_t leaves() const { return leaves_.size(); }
     /// Holds the patch over that leaf.
     Bounds box(std::size_t leaf) const { return leaves_[leaf].values; }
+    /// How many boxes were halved for single rays until now: what takes long.
+    std::uint64_t halved() const { return halved_.load(std::memory_order_relaxed); }
     /// Where rays meet a leaf, at distances from 0 to farthest[i]: those of the first n lanes that have a bit in `active`. `farthest` has
     /// numbers for all lanes.
     void meet(std::size_t leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const;
@@ -84,6 +86,7 @@ private:
     double size_, slack_;
     std::deque<Leaf> leaves_;
     mutable std::atomic<std::size_t> kept_{0};  // halves
+    mutable std::atomic<std::uint64_t> halved_{0};
 };
 
 }  // namespace isoparm

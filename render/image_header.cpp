@@ -243,19 +243,4 @@ ImageHeader read_image_header(std::string_view bytes, std::uint64_t size, const 
     return h;
 }
 
-void check_image_end(const std::string& format, std::uint64_t size, const std::function<std::string(std::uint64_t, std::size_t)>& read, const std::string& path) {
-    const auto fail = [&](const std::string& what) { throw Error(ErrorKind::io, path + ": " + what + ": the file is damaged or cut off"); };
-    if (format == "png") {
-        constexpr std::uint64_t kAround = 12;  // a chunk's length, type and checksum
-        for (std::uint64_t at = 8;;) {
-            const std::string head = at + kAround <= size ? read(at, 8) : "";
-            if (head.size() < 8) fail("found no chunk IEND at the end of the PNG file");
-            if (head.substr(4) == "IEND") return;
-            Reader r{head, path, true};
-            at += r.u32() + kAround;
-        }
-    }
-    if (format == "jpeg" && read(size > 4096 ? size - 4096 : 0, 4096).find("\xff\xd9") == std::string::npos) fail("found no marker EOI at the end of the JPEG file");
-}
-
 }  // namespace isoparm

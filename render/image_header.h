@@ -30,8 +30,9 @@ std::string format_of_name(const std::string& path);
 /// bytes must agree. Throws Error(io): what was found, and what was expected.
 ImageHeader read_image_header(std::string_view bytes, std::uint64_t size, const std::string& path);
 
-/// Does a PNG file of `size` bytes end in its IEND chunk, a JPEG file in its EOI marker? Decoders fill up what was cut off, and say nothing.
-/// `read` gives bytes [at, at + n) of the file, fewer where it ends. Throws Error(io) if not; other formats are not looked at.
+/// Is the file whole? A PNG file of `size` bytes ends in its IEND chunk, a JPEG file in its EOI marker, a TGA file in its footer or with its pixels;
+/// all that the directories of a TIFF file name lies in it. Decoders fill up what was cut off, and say nothing. `read` gives bytes
+/// [at, at + n) of the file, fewer where it ends. Throws Error(io) if not; other formats are not looked at. (image_end.cpp)
 void check_image_end(const std::string& format, std::uint64_t size, const std::function<std::string(std::uint64_t at, std::size_t n)>& read, const std::string& path);
 
 }  // namespace isoparm

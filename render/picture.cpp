@@ -155,8 +155,18 @@ struct Area {
     int height() const { return y1 - y0; }
 };
 
+/// Rays against folds and places without area halve boxes again and again: minutes for what others do in a second. Throws Error(budget).
+void check_work(const TracedScene& traced, double most, double done) {
+    constexpr double kMostEach = 20;  // scenes without such places are below 1
+    double halved = 0;
+    for (const ExactPatch& p : traced.patches) halved += static_cast<double>(p.halved());
+    if (const auto rays = static_cast<double>(traced.embree->count().rays); halved > std::max(most, kMostEach * rays))
+        throw Error(ErrorKind::budget, "--exact was given up after " + to_text(std::floor(100 * done)) + " % of the picture: a ray looks at " + to_text(std::round(halved / std::max(1.0, rays))) +
+                                           " pieces of the surfaces, as where they are folded or have no area; render without --exact, or a smaller picture with fewer samples");
+}
+
 /// Calls `progress` from the calling thread only, which works on tiles like the others.
-void trace(const Tracer& tracer, const AovReader& aovs, const Area& area, const std::function<void(double)>& progress,
+void trace(const TracedScene& traced, double most_halved, const Tracer& tracer, const AovReader& aovs, const Area& area, const std::function<void(double)>& progress,
            Picture& picture) {
     const int across = (area.width() + kTile - 1) / kTile, tiles = across * ((area.height() + kTile - 1) / kTile);
     const auto caller = std::this_thread::get_id();
@@ -173,6 +183,7 @@ void trace(const Tracer& tracer, const AovReader& aovs, const Area& area, const 
                 if (aovs.channels() > 0) aovs.read(x, y, p.spread.variance(), &picture.layers.values[pixel * aovs.channels()]);
             }
         const int now = ++done;
+        check_work(traced, most_halved, static_cast<double>(now) / tiles);
         if (progress && std::this_thread::get_id() == caller) progress(static_cast<double>(now) / tiles);
     });
 }
@@ -240,6 +251,7 @@ struct Quality {
     double pixel;  // pixels of this picture to one of the scene's
     std::vector<Aov> aovs;
     bool exact, vectors;
+    double most_halved;
 };
 
 /// Puts a drawing over a picture; (x,y) is where its pixels begin there.
@@ -272,7 +284,7 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     picture.image = blank(area.width(), area.height(), {});
     picture.layers = blank_layers(area.width(), area.height(), how.aovs);
     const std::unique_ptr<const Lighting> lighting = lighting_of(scene, camera);
-    trace(Tracer(traced, camera, *lighting, how.samples, scene.image.background), AovReader(scene, traced, camera, how.aovs), area,
+    trace(traced, how.most_halved, Tracer(traced, camera, *lighting, how.samples, scene.image.background), AovReader(scene, traced, camera, how.aovs), area,
           part_of_progress(kMeshShare, 1 - kMeshShare), picture);
     picture.rays = traced.embree->count();
     put_over(overlay(scene, view.objects, traced, camera, how.pixel, view.letter, how.vectors), -area.x0, -area.y0, view.width, view.height, how.vectors, picture);
@@ -307,7 +319,7 @@ Picture render(const Scene& scene, const RenderOptions& options) {
     const Area area = checked_area(options, width, height);
     const Quality how{
         checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples),
-        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs, options.exact, options.vectors};
+        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs, options.exact, options.vectors, options.most_halved};
     double reached = 0;  // progress never runs backwards, whatever its parts report
     std::optional<double> letter;
     if (options.letter_points) letter = *options.letter_points * options.pixels_per_point;

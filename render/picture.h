@@ -15,6 +15,7 @@ struct RenderOptions {
     std::optional<Tolerance> tolerance;      // none: as the scene says
     std::optional<std::array<int, 4>> crop;  // x0,y0,x1,y1 in pixels; the picture is then only that part
     bool exact = false;                      // rays meet the surfaces themselves; the tolerance is for tubes only
+    double most_halved = 3e7;                // boxes that exact rays may look at; and 20 a ray, if that is more. Beyond it Error(budget)
     std::vector<Aov> aovs;                   // what to put in `layers`
     std::vector<Point> also_fit;             // cameras that fit have these in the picture too: other frames of a film
     double pixels_per_point = 300.0 / 72;    // of the printed picture: what a scene says in points

@@ -1,10 +1,11 @@
 // scene_file.cpp -- a scene from its file: parameters, curves, surfaces, what is drawn, and how.
+#include "scene_file.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "json.h"
-#include "scene.h"
 #include "scene_builder.h"
 #include "scene_light.h"
 #include "scene_objects.h"
@@ -249,8 +250,10 @@ CameraSettings load_camera(const std::string& path) {
     return read_camera(root, {});
 }
 
-Scene load_scene(const std::string& path, const std::map<std::string, double>& overrides) {
-    return read_scene(Json::parse(read_text_file(path), path), overrides);
+Scene parse_scene(const std::string& text, const std::string& path, const std::map<std::string, double>& overrides) {
+    return read_scene(Json::parse(text, path), overrides);
 }
+
+Scene load_scene(const std::string& path, const std::map<std::string, double>& overrides) { return parse_scene(read_text_file(path), path, overrides); }
 
 }  // namespace isoparm

@@ -1,4 +1,5 @@
-// Damaged files, made by mutation from fixed seeds: cut off, bytes flipped, huge counts, blocks repeated or left out, numbers out of range.
+// Damaged files, made by mutation from fixed seeds: cut off, also at every byte, bytes and bits flipped, huge counts, blocks repeated, exchanged or left
+// out, brackets nested deep, runs of one byte, numbers out of range.
 // Whatever reads them ends with an exit code of its own: no signal, at most 1 GiB, 2 seconds. ISOPARM_DAMAGED=N makes N of each kind and
 // command instead of a few: tests/long/damaged.sh.
 #include <gtest/gtest.h>
@@ -10,7 +11,9 @@
 #include <filesystem>
 #include <random>
 
+#include "error.h"
 #include "expect_program.h"
+#include "image_header.h"
 
 namespace isoparm {
 namespace {
@@ -26,7 +29,7 @@ constexpr double kSeconds = 2, kMebibytes = 1024;
 
 std::string damaged(std::string bytes, std::mt19937& random, bool text) {
     const auto below = [&](std::size_t n) { return n == 0 ? 0 : random() % n; };
-    const std::size_t kind = below(7), times = below(3) + 1;
+    const std::size_t kind = below(9), times = below(3) + 1;
     for (std::size_t i = 0; i < times && bytes.size() > 8; ++i) {
         const std::size_t at = below(bytes.size()), length = std::min(below(64) + 1, bytes.size() - at);
         if (kind == 0) bytes.resize(at);
@@ -37,6 +40,16 @@ std::string damaged(std::string bytes, std::mt19937& random, bool text) {
             bytes.replace(at % 300 % (bytes.size() - 4), 4, counts[below(5)]);
         } else if (kind == 4) bytes.insert(at, bytes.substr(at, length));
         else if (kind == 5) bytes.erase(at, length);
+        else if (kind == 7) {  // two blocks change places
+            const std::size_t a = below(bytes.size() / 2), b = bytes.size() / 2 + below(bytes.size() / 2), n = std::min(length, bytes.size() - b);
+            std::swap_ranges(bytes.begin() + static_cast<std::ptrdiff_t>(a), bytes.begin() + static_cast<std::ptrdiff_t>(std::min(a + n, b)), bytes.begin() + static_cast<std::ptrdiff_t>(b));
+        } else if (kind == 8) {
+            static const std::string runs[] = {"[", "{\"a\":", "(", "-", "1", " ", "\n", std::string(1, '\0'), "\xff"};
+            const std::string& unit = runs[below(text ? 7 : 9)];
+            std::string run;
+            for (const std::size_t n = 1 + below(20000); run.size() < n;) run += unit;
+            bytes.insert(at, run);
+        }
         else if (const std::size_t digit = text ? bytes.find_first_of("0123456789", at) : std::string::npos; digit != std::string::npos) {
             static const char* const numbers[] = {"99999999999", "1e308", "-1", "1e-320", "nan", "0", "inf", "4294967296", "2147483647"};
             bytes.replace(digit, 1, numbers[below(9)]);
@@ -79,6 +92,8 @@ protected:
         fs::copy_file(source / "scenes/coons.json", in + "/coons.json");
         fs::copy_file(source / "scenes/teapot.bv", in + "/teapot.bv");
         fs::copy_file(source / "tests/data/cages/semisharp.obj", in + "/cage.obj");
+        for (const std::string name : {"curves.brep", "loop.lop"}) fs::copy_file(source / "tests/fuzz/corpus" / name, in + "/" + name);
+        for (const std::string type : {"brep", "lop"}) write_all(in + "/" + type + ".json", R"({"isoparm": 1, "curves": {"c": {"type": "file", "path": "damaged.)" + type + R"(", "index": 1}}})");
         write_all(in + "/file.json", R"({"isoparm": 1, "surfaces": {"s": {"type": "file", "path": "damaged.bv"}}, "objects": [{"surface": "s"}], "tessellation": {"tolerance": 0.1}})");
         const std::string& file = GetParam().file;
         if (file[0] == 'a') {
@@ -91,41 +106,57 @@ protected:
             ASSERT_EQ(run("tessellate coons.json --tolerance 0.02 --quiet -o m.ply --certificate c.json", in).code, 0);
         }
     }
-    const test::TemporaryFolder folder;
+
+    /// Tries each file; what fails is kept.
+    template <class Make> void try_all(int count, const char* how, Make make) {
+        const Kind& kind = GetParam();
+        const std::string name = "damaged" + fs::path(kind.file).extension().string();
+        std::string arguments = kind.arguments;
+        if (const auto at = arguments.find("FILE"); at != std::string::npos) arguments.replace(at, 4, name);
+        double seconds = 0, mebibytes = 0;
+        for (int k = 0; k < count; ++k) {
+            const std::string bytes = make(k);
+            write_all(folder / name, bytes);
+            const Measured m = measured(folder.path(), arguments);
+            seconds = std::max(seconds, m.seconds), mebibytes = std::max(mebibytes, m.mebibytes);
+            const std::string what = kind.file + ", " + how + " " + std::to_string(k) + ", " + arguments + ": " + m.err;
+            EXPECT_TRUE(m.code <= 4 || m.code == 65) << m.code << " " << what;
+            EXPECT_TRUE((m.code != 4 && m.code != 65) || m.err.find("isoparm: ") != std::string::npos) << what;
+            EXPECT_LE(m.seconds, kSeconds) << what;
+            EXPECT_LE(m.mebibytes, kMebibytes) << what;
+            if (HasFailure()) {
+                const std::string kept = (fs::temp_directory_path() / ("isoparm-" + std::to_string(k) + "-" + name)).string();
+                write_all(kept, bytes);
+                FAIL() << "the file is kept: " << kept;
+            }
+        }
+        if (std::getenv("ISOPARM_DAMAGED")) std::printf("%-11s %5d files (%s), at most %.2f s, %.0f MiB: %s\n", kind.file.c_str(), count, how, seconds, mebibytes, kind.arguments.c_str());
+    }
+    const test::TemporaryFolder folder{};
 };
 
-TEST_P(Damaged, EndsWithAnExitCode) {
-    const Kind& kind = GetParam();
-    const std::string name = "damaged" + fs::path(kind.file).extension().string(), good = read_all(folder / kind.file);
-    ASSERT_FALSE(good.empty());
-    std::string arguments = kind.arguments;
-    if (const auto at = arguments.find("FILE"); at != std::string::npos) arguments.replace(at, 4, name);
+/// As many as the environment says, or a few.
+int count_of(int few) {
     const char* given = std::getenv("ISOPARM_DAMAGED");
-    const int count = given ? std::atoi(given) : kind.few;
-    double seconds = 0, mebibytes = 0;
-    for (int seed = 1; seed <= count; ++seed) {
-        std::mt19937 random(static_cast<unsigned>(seed));
-        const std::string bytes = damaged(good, random, kind.text);
-        write_all(folder / name, bytes);
-        const Measured m = measured(folder.path(), arguments);
-        seconds = std::max(seconds, m.seconds), mebibytes = std::max(mebibytes, m.mebibytes);
-        const std::string what = kind.file + ", seed " + std::to_string(seed) + ", " + arguments + ": " + m.err;
-        EXPECT_TRUE(m.code <= 4 || m.code == 65) << m.code << " " << what;
-        EXPECT_TRUE((m.code != 4 && m.code != 65) || m.err.find("isoparm: ") != std::string::npos) << what;
-        EXPECT_LE(m.seconds, kSeconds) << what;
-        EXPECT_LE(m.mebibytes, kMebibytes) << what;
-        if (HasFailure()) {
-            const std::string kept = (fs::temp_directory_path() / ("isoparm-" + std::to_string(seed) + "-" + name)).string();
-            write_all(kept, bytes);
-            FAIL() << "the file is kept: " << kept;
-        }
-    }
-    if (given) std::printf("%-10s %5d files, at most %.2f s, %.0f MiB: %s\n", kind.file.c_str(), count, seconds, mebibytes, kind.arguments.c_str());
+    return given ? std::atoi(given) : few;
+}
+
+TEST_P(Damaged, EndsWithAnExitCode) {
+    const std::string good = read_all(folder / GetParam().file);
+    ASSERT_FALSE(good.empty());
+    try_all(count_of(GetParam().few), "seed", [&](int k) {
+        std::mt19937 random(static_cast<unsigned>(k + 1));
+        return damaged(good, random, GetParam().text);
+    });
+    // Cut off at every byte of small files, and at the first and last bytes of others; only where many are asked for.
+    const int size = static_cast<int>(good.size()), count = std::min({size, 4 * count_of(0), 1000});
+    try_all(count, "cut", [&](int k) { return good.substr(0, static_cast<std::size_t>(k < count / 2 ? k : size - count + k)); });
 }
 INSTANTIATE_TEST_SUITE_P(Files, Damaged,
                          testing::Values(Kind{"a.exr", "diff a.exr FILE -q", false, 2}, Kind{"a.png", "diff a.png FILE -q --html page.html", false, 2}, Kind{"a.jpg", "diff a.jpg FILE -q", false, 1},
                                          Kind{"a.tif", "diff a.tif FILE -q", false, 1}, Kind{"a.tga", "diff a.tga FILE -q", false, 1}, Kind{"a.bmp", "diff FILE a.bmp -q", false, 1},
                                          Kind{"m.ply", "verify FILE --against coons.json", false, 8}, Kind{"m.obj", "verify FILE --against coons.json", true, 8}, Kind{"m.stl", "verify FILE --against coons.json", false, 8},
+                                         Kind{"m.glb", "verify FILE --against coons.json", false, 12}, Kind{"curves.brep", "info brep.json", true, 20}, Kind{"loop.lop", "info lop.json", true, 12},
                                          Kind{"cage.obj", "limit FILE", true, 20}, Kind{"teapot.bv", "tessellate file.json -o o.ply --max-triangles 5000 --quiet", true, 20}, Kind{"coons.json", "info FILE", true, 20},
                                          Kind{"coons.json", "tessellate FILE -o o.ply --max-triangles 5000 --quiet", true, 20}, Kind{"coons.json", "check FILE", true, 8},
                                          Kind{"coons.json", "render FILE -o o.png --size 24x16 --samples 1 --quiet", true, 2}, Kind{"c.json", "verify m.ply --certificate FILE --against coons.json", true, 20}),
@@ -133,11 +164,20 @@ INSTANTIATE_TEST_SUITE_P(Files, Damaged,
 
 TEST(DamagedImages, CutOffAreNeverEqual) {
     const test::TemporaryFolder t;
-    for (const std::string type : {"png", "jpg"}) {
+    for (const std::string type : {"png", "jpg", "tif", "tga"}) {
         const std::string good = t / ("a." + type), cut = t / ("b." + type);
         ASSERT_EQ(run("render " + test::scene("coons") + " --size 16x16 --samples 1 --quiet -o " + good).code, 0);
         const std::string bytes = read_all(good);
-        write_all(cut, bytes.substr(0, bytes.size() - (type == "png" ? 12 : 2)));
+        const auto look_at = [&](std::size_t size) {
+            const std::string_view there = std::string_view(bytes).substr(0, size);
+            check_image_end(read_image_header(there, size, good).format, size, [&](std::uint64_t at, std::size_t n) { return std::string(at < size ? there.substr(at, n) : ""); }, good);
+        };
+        look_at(bytes.size());
+        const std::size_t old = type == "tga" ? 18 + 16 * 16 * 3 : 0;  // without a footer, but with all pixels: a file of the format's first version
+        for (std::size_t size = 0; size < bytes.size(); ++size)
+            if (size != old || old == 0) EXPECT_THROW(look_at(size), Error) << type << " " << size;
+        if (type == "jpg") continue;
+        write_all(cut, bytes.substr(0, bytes.size() - 1));
         test::expect("diff " + good + " " + cut, 4, "damaged or cut off");
     }
 }

@@ -172,8 +172,8 @@ TEST(Diff, PartsThatDifferInShapeAreNotCompared) {
 }
 
 // ---- FLIP and SSIM ----------------------------------------------------------------------------------------------------
-// Values from another implementation of the same papers, in NumPy with two-dimensional kernels in double; SSIM from scikit-image 0.19.3
-// (gaussian_weights, sigma 1.5, use_sample_covariance false).
+// Values from another implementation of the same papers, in NumPy with two-dimensional kernels in double, and the same from the authors' functions
+// (python/flip_api.py of NVlabs/flip, 2021), followed line by line; SSIM from scikit-image 0.19.3 (gaussian_weights, sigma 1.5, use_sample_covariance false).
 
 struct Colors {
     int width, height;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "error.h"
 #include "expect_program.h"
 #include "picture.h"
 #include "traced_scene.h"
@@ -212,6 +213,24 @@ RenderOptions exact_picture(int width, int height, int samples) {
     how.exact = true;
     how.aovs = {Aov::n, Aov::z, Aov::patch, Aov::error};
     return how;
+}
+
+/// The two sheets of a fold touch along lines that a picture sees as areas.
+TEST(Exact, FoldsEndWithAMessageAndOtherSurfacesDoNot) {
+    const auto picture = [](const std::string& points) {
+        RenderOptions how = exact_picture(64, 48, 4);
+        how.aovs.clear();
+        how.most_halved = 1e4;
+        return render(written(R"("surfaces": { "q": { "type": "bezier", "points": )" + points + R"( } }, "objects": [ { "surface": "q" } ])"), how);
+    };
+    EXPECT_GT(picture("[[[0,0,0],[1,0,0],[2,0,0]],[[0,1,0],[1,1,1],[2,1,0]]]").rays.rays, 64u * 48 * 4);
+    try {
+        picture("[[[0,0,0],[1,0,0],[0,0,0]],[[1,1,0],[0,1,0],[1,1,0]]]");
+        ADD_FAILURE();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::budget);
+        EXPECT_NE(std::string(e.what()).find("as where they are folded"), std::string::npos) << e.what();
+    }
 }
 
 // |Z - Z'| <= distance / cos of the angle at which the ray meets the surface, along the axis; the sphere bends little within that.

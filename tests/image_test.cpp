@@ -1,15 +1,18 @@
 // Image files: what is written comes back, or nothing is left behind.
 #include "image.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include "error.h"
 
@@ -168,6 +171,22 @@ TEST_F(ImageFiles, WhatIsNoImageIsRefused) {
     std::ofstream(path("a.png")) << "not an image";
     EXPECT_THROW(read_image(path("a.png")), Error);
     EXPECT_THROW(read_image(path("none.exr")), Error);
+}
+
+/// Libraries go back in the file that they write, and read it again: a pipe gets what they made, byte by byte.
+TEST_F(ImageFiles, GoToPipes) {
+    for (const std::string extension : {"png", "exr", "tif", "jpg"}) {
+        const std::string pipe = path("pipe." + extension), file = path("file." + extension);
+        ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+        std::string got;
+        std::thread reader([&] { got = bytes(pipe); });
+        EXPECT_NO_THROW(write_image(pipe, ramp(true), {}));
+        if (const int other = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK); other >= 0) ::close(other);  // where writing failed, the reader must not wait
+        reader.join();
+        write_image(file, ramp(true), {});
+        EXPECT_EQ(got, bytes(file)) << extension;
+        EXPECT_GT(got.size(), 100u);
+    }
 }
 
 }  // namespace

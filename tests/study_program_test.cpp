@@ -212,6 +212,10 @@ TEST(StudyProgram, RefusesWhatItCannotDo) {
     write_all(t / "taken/index.html", "mine");
     expect("-o " + t / "taken", 4, "not of a study");
     EXPECT_EQ(read_all(t / "taken/index.html"), "mine");
+    fs::create_directory(t / "drawn");
+    write_all(t / "drawn/ratio-tolerance.pdf", "mine");
+    expect("-o " + t / "drawn", 4, "ratio-tolerance.pdf: found a file that is not of a study");
+    EXPECT_EQ(read_all(t / "drawn/ratio-tolerance.pdf"), "mine");
 }
 
 TEST(StudyProgram, RefusesAFolderThatItMayNotWriteTo) {

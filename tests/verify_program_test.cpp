@@ -44,7 +44,7 @@ TEST(VerifyProgram, TheBorderOfASurfaceIsNoHole) {
 }
 TEST(VerifyProgram, LimitsAndExitCodes) {
     const TemporaryFolder t;
-    expect("verify /dev/zero --against " + scene("sphere"), 64, "expected .ply, .obj or .stl");
+    expect("verify /dev/zero --against " + scene("sphere"), 64, "expected .ply, .obj, .stl or .glb");
     std::filesystem::create_symlink("/dev/zero", t / "zero.ply");
     expect("verify " + t / "zero.ply" + " --against " + scene("sphere"), 4, "found a device or pipe, expected a file");
     const std::string against = " --against " + scene("sphere");
@@ -78,7 +78,7 @@ TEST(VerifyProgram, ErrorsSayWhatIsWrong) {
     expect("verify " + t / "o.obj" + against + " --tolerance 1px", 64, "needs a picture");
     expect("verify " + t / "o.obj" + against + " --surface x", 64, "expected one of");
     expect("verify " + t / "o.xyz.obj" + against, 4, "No such file");
-    expect("verify " + source_folder() + "/README.md" + against, 64, "expected .ply, .obj or .stl");
+    expect("verify " + source_folder() + "/README.md" + against, 64, "expected .ply, .obj, .stl or .glb");
     expect("verify " + t / "none.obj" + against, 4, "No such file");
     expect("verify " + t / "bad.obj" + against, 65, "bad.obj:2:5: found the vertex index 2, expected 1 to 1");
     expect("verify " + t / "short.ply" + against, 65, "0 bytes left");

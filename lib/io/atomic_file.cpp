@@ -1,6 +1,7 @@
 #include "io/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -216,6 +217,23 @@ bool is_device(const std::string& path) {
     return ::stat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode) && !S_ISDIR(found.st_mode);
 }
 
+/// Libraries go back in what they write, and read it again, which a pipe does not allow: they get a file in memory.
+void write_device_by_name(const std::string& path, const std::function<void(const std::string&)>& write) {
+    struct Memory {
+        int file = ::memfd_create("isoparm", MFD_CLOEXEC);
+        ~Memory() { ::close(file); }
+    } const memory;
+    if (memory.file < 0) fail(path, "cannot make a file in memory for what goes there", errno);
+    const std::string name = "/proc/self/fd/" + std::to_string(memory.file);
+    write(name);
+    write_stream(path, path, [&](std::ostream& out) {
+        std::ifstream in(name, std::ios::binary);
+        std::vector<char> bytes(1 << 16);
+        while (in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || in.gcount() > 0) out.write(bytes.data(), in.gcount());
+        if (in.bad()) fail(path, "cannot be read from memory", errno ? errno : EIO);
+    });
+}
+
 }  // namespace
 
 void remove_temporaries() {
@@ -247,7 +265,7 @@ void write_atomically(const std::string& path, const std::function<void(std::ost
 
 void write_atomically_by_name(const std::string& path, const std::function<void(const std::string&)>& write) {
     const std::string target = target_of(path);
-    if (is_device(path)) return write(path);
+    if (is_device(path)) return write_device_by_name(path, write);
     Temporary temporary(target);
     write(temporary.name());
     temporary.sync_and_rename();

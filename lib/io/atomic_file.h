@@ -10,7 +10,8 @@ namespace isoparm {
 /// why. A program that is killed between naming and renaming (microseconds), or on a file system without O_TMPFILE, leaves isoparm.tmp-*.
 /// Links are followed, also to a file that is not there yet. The new file has the permissions of the old one, without setuid and setgid.
 void write_atomically(const std::string& path, const std::function<void(std::ostream&)>& write);
-/// The same when another library does the writing: `write` gets a name of the temporary to open: its extension says nothing.
+/// The same when another library does the writing: `write` gets a name of the temporary to open: its extension says nothing. What a pipe or
+/// device is to get is made in memory first, as libraries go back in files.
 void write_atomically_by_name(const std::string& path, const std::function<void(const std::string&)>& write);
 /// Where `path` leads when its links are followed, whether or not there is a file; itself where it is no link. "" with errno where there is no way
 /// (ELOOP, EACCES ...).

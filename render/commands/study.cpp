@@ -17,6 +17,7 @@
 #include "provenance.h"
 #include "sha256.h"
 #include "study_output.h"
+#include "study_plots.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -119,10 +120,12 @@ std::string geometry_of(const Composite& patches) {
 }
 
 /// Names that the study writes at the end must be free, or another study's.
-void check_folder(const StudyStore& store, const Scene& scene, const Options& options) {
+void check_folder(const StudyStore& store, const Study& study, const Options& options) {
     std::vector<NamedFile> outputs;
     for (const char* name : {"study.json", "study.csv", "index.html"}) outputs.push_back({"-o", store.path(name)});
-    check_outputs(options, outputs, inputs_of(scene));
+    for (const StudyPlot& p : study_plots({}, study.methods))
+        for (const char* extension : {".svg", ".pdf"}) outputs.push_back({"-o", store.path(p.file + extension)});
+    check_outputs(options, outputs, inputs_of(study.scene));
     const std::string json = store.path("study.json");
     bool ours = false;
     try {
@@ -255,7 +258,7 @@ int run(const std::vector<std::string>& arguments) {
             study.options += (study.options.empty() ? "" : " ") + std::string(name) + " " + value;
 
     const StudyStore store(folder);
-    check_folder(store, study.scene, options);
+    check_folder(store, study, options);
     const std::vector<StudyRow> rows = Runner(study, store).run();
     write_results(study, store, rows);
     if (!study.quiet) std::fprintf(stderr, "%s: %zu runs\n", store.path("index.html").c_str(), rows.size());

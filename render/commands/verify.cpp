@@ -11,7 +11,7 @@
 #include "commands/selection.h"
 #include "commands/verify_certificate.h"
 #include "error.h"
-#include "io/mesh_reader.h"
+#include "glb_reader.h"
 #include "json.h"
 #include "json_text.h"
 #include "mesh_defects.h"
@@ -28,8 +28,8 @@ a point of the surfaces from the mesh, and one for a point of the mesh from the 
 rounding error counted. Then what the mesh is like: holes, T-junctions, edges of three triangles, triangles that are upside
 down, twice there, flat or thin, and how far their normals are from the surface's (sampled).
 
-MESH              .ply (ascii or binary), .obj or .stl (ascii or binary). Polygons are cut into fans about their first
-                  corner. STL shares no vertices: those with exactly equal coordinates become one
+MESH              .ply (ascii or binary), .obj, .stl (ascii or binary) or .glb (what its scene shows). Polygons are cut into fans
+                  about their first corner. STL shares no vertices, and .glb few: those with exactly equal coordinates become one
 --against SCENE   the scene file
 --surface S       one surface, or one patch of it, as in teapot/teapot#7; otherwise all surfaces that the scene draws
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
@@ -55,8 +55,6 @@ limits            exit code 2 when one is exceeded, or cannot be decided within 
 
 exit codes        0, 2 (above), 4 a file cannot be read, 64 usage, 65 bad mesh or scene
 )";
-
-constexpr std::size_t kMostBytes = std::size_t{64} << 30;
 
 struct Limit {
     std::string what;
@@ -197,10 +195,10 @@ int run(const std::vector<std::string>& arguments) {
     if (junctions && !(*junctions >= 0)) options.fail("--junctions: found " + to_text(*junctions) + ", expected a number that is not negative");
     const auto tolerance = options.tolerance();
 
-    require_mesh_name(r.path);
+    require_mesh_file(r.path);
     if (std::filesystem::exists(r.path) && !std::filesystem::is_regular_file(r.path) && !std::filesystem::is_directory(r.path))
         throw Error(ErrorKind::io, r.path + ": found a device or pipe, expected a file");
-    r.file = read_mesh(read_text_file(r.path, kMostBytes), r.path);
+    r.file = read_mesh_file(r.path);
     r.welded = r.file.welded + (options.has("--weld") ? weld_equal_points(r.file.mesh) : 0);
     const Scene scene = options.scene_at(r.scene);
     r.selection = select_patches(scene, options);

@@ -7,7 +7,7 @@
 #include "certificate_file.h"
 #include "commands/selection.h"
 #include "error.h"
-#include "io/mesh_reader.h"
+#include "glb_reader.h"
 #include "json.h"
 #include "json_text.h"
 #include "progress.h"
@@ -32,7 +32,7 @@ void sort(std::vector<Triangle>& all) {
 
 /// Empty when the mesh has the triangles of the certificate, and no others.
 std::string mesh_fault(const Certificate& c, const std::string& path) {
-    const MeshFile file = read_mesh(read_text_file(path, kMostBytes), path);
+    const MeshFile file = read_mesh_file(path);
     std::vector<Triangle> claimed, found;
     for (const CertifiedPatch& p : c.patches)
         for (const CertifiedTriangle& t : p.triangles) add_triangle(claimed, {c.points[p.vertex[t.corner[0]]], c.points[p.vertex[t.corner[1]]], c.points[p.vertex[t.corner[2]]]});
@@ -107,7 +107,7 @@ int verify_certificate(const Options& options) {
     r.path = *options.value("--certificate");
     r.scene = options.required("--against", "the scene file that the certificate is of");
     const auto tolerance = options.tolerance();
-    if (!options.words().empty()) require_mesh_name(options.words().front());
+    if (!options.words().empty()) require_mesh_file(options.words().front());
     r.file = read_certificate(read_text_file(r.path, kMostBytes), r.path);
     const Certificate& c = r.file.certificate;
     if (const std::string digest = sha256(read_text_file(r.scene)); digest != r.file.sha256) {

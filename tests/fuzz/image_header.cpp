@@ -1,6 +1,8 @@
-// Any bytes as the beginning of an image file, of every format: pixels, or an isoparm::Error that says what is wrong.
+// Any bytes as an image file, of every format: pixels and an end, or an isoparm::Error that says what is wrong.
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 
 #include "error.h"
@@ -11,6 +13,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         try {
             const auto h = isoparm::read_image_header({reinterpret_cast<const char*>(data), size}, size, "fuzz." + extension);
             if (h.pixels == 0 || h.row == 0 || h.format != format) std::abort();
+            isoparm::check_image_end(h.format, size, [&](std::uint64_t at, std::size_t n) {
+                return at < size ? std::string(reinterpret_cast<const char*>(data) + at, std::min<std::size_t>(n, size - at)) : std::string();
+            }, "fuzz." + extension);
         } catch (const isoparm::Error&) {
         }
     }

@@ -1,5 +1,7 @@
 // Any bytes as control points of a surface, huge, tiny and not finite ones too: an isoparm::Error, or a surface whose points lie in their
 // enclosures and whose mesh, where there is one, is finite and no farther from it than is certified.
+#include <tbb/global_control.h>
+
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -62,7 +64,8 @@ Patch surface(Bytes& in) {
     return make_coons({c0, c1, make_bezier(curve(in, a, c)), make_bezier(curve(in, b, d))});
 }
 
-void check(const Patch& patch) {
+/// Two enclosures of the same points, the points themselves, and a triangle's proved distance against what its middle shows.
+void check_enclosures(const Patch& patch) {
     const Box box{{0.25, 0.5}, {0.125, 0.375}};
     const auto over = patch.enclose_points(box);
     for (const auto& [u, v] : {std::pair{0.25, 0.125}, {0.5, 0.375}, {0.3125, 0.25}}) {
@@ -72,23 +75,49 @@ void check(const Patch& patch) {
             if (exact[k].hi < over[k].lo || exact[k].lo > over[k].hi) std::abort();
         (void)evaluate(patch, u, v);
     }
+}
+/// At least how far S(uv) is from x, by an enclosure.
+double apart(const Patch& patch, const Vec2& uv, const Point& x) {
+    const auto s = patch.enclose_point(uv.x, uv.y);
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) sum += std::pow(std::max({0.0, s[k].lo - x[k], x[k] - s[k].hi}), 2);
+    return std::sqrt(sum);
+}
+/// The mesh is finite, and no middle of a triangle or edge is farther from the surface than is certified.
+void check_mesh(const Patch& patch, bool study) {
     TessellationOptions options;
     options.measure = Measure::parametric;
-    options.tolerance = 0.1 * bounding_box({{"s", patch}}).diagonal();
-    options.max_triangles = 100;
+    const Rect r = patch.rect();
+    const auto all = patch.enclose_points({{r.u0, r.u1}, {r.v0, r.v1}});  // at a fraction of what bounding_box() takes
+    options.tolerance = 0.1 * length(Point{all[0].hi - all[0].lo, all[1].hi - all[1].lo, all[2].hi - all[2].lo});
+    options.max_triangles = 40;
+    options.study = study;
     if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) return;
     const Tessellation t = tessellate({{"s", patch}}, options);
+    if (!(t.certified_error <= options.tolerance) || t.sampled_error > t.certified_error) std::abort();
     for (const Point& p : t.mesh.positions)
         if (!finite(p)) std::abort();
-    if (!(t.certified_error <= options.tolerance) || t.sampled_error > t.certified_error) std::abort();
+    const MeshPart& part = t.mesh.parts.front();
+    for (const auto& c : part.triangles)
+        for (const auto& [i, j, k] : {std::array{1, 1, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}}) {
+            const double n = i + j + k;
+            const Vec2 &a = part.uv[c[0]], &b = part.uv[c[1]], &d = part.uv[c[2]];
+            const Vec2 uv{(i * a.x + j * b.x + k * d.x) / n, (i * a.y + j * b.y + k * d.y) / n};
+            const auto at = [&](int m) { return t.mesh.positions[part.vertex[c[std::size_t(m)]]]; };
+            const Point x = (1 / n) * (i * at(0) + j * at(1) + k * at(2));
+            if (apart(patch, uv, x) > t.certified_error + 1e-9 * options.tolerance) std::abort();  // uv and x are rounded
+        }
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
     Bytes in{data, size};
     try {
-        check(surface(in));
+        const Patch patch = surface(in);
+        check_enclosures(patch);
+        check_mesh(patch, in.byte() % 16 == 1);  // the study takes longer than all else
     } catch (const Error&) {
     }
     return 0;
