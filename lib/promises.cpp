@@ -24,6 +24,8 @@ void keep_worst(std::optional<Condition>& worst, const Condition& c) {
 }
 std::string numbered(const char* name, std::size_t k) { return std::string(name) + "[" + std::to_string(k) + "]"; }
 
+TwistPair pair_of(const Condition& c, const Point& at, const Point& of_f, const Point& of_g) { return {at, of_f, of_g, c.gap, c.tolerance, c.remedy}; }
+
 bool has_corner(const std::vector<Curve>& curves) {
     for (const Curve& c : curves)
         for (const Break& b : c.breaks())
@@ -61,6 +63,7 @@ DataReport examine(const HermiteData& data, Twist twist) {
             r.conditions.push_back(condition("tangents" + at + name("g", t) + of_g + " = " + name("f", v) + "'" + of_f, g[t](i), fv, size + length(fv)));
             const Point a = f[s].derivative(j), b = g[t].derivative(i);
             r.conditions.push_back(condition("twists" + at + name("f", s) + "'" + of_f + " = " + name("g", t) + "'" + of_g, a, b, size + length(fu) + length(fv) + length(a), name_of(twist)));
+            r.twists.push_back(pair_of(r.conditions.back(), f[v](j), a, b));
         }
     const Rect unit;
     for (const int i : {0, 1}) {
@@ -83,6 +86,7 @@ DataReport examine(const Network& given, const CrossDerivatives* given_cross, Tw
     for (Curve& c : cross.B) c = reparametrized(c, 0, m);
     const double size = std::max(size_of({&a.front(), &a.back()}), size_of({&b.front(), &b.back()}));
     std::optional<Condition> crossing, tangent, twists;
+    std::vector<TwistPair> pairs;
     for (std::size_t i = 0; i < a.size(); ++i)
         for (std::size_t j = 0; j < b.size(); ++j) {
             const double u = double(i), v = double(j);
@@ -92,9 +96,11 @@ DataReport examine(const Network& given, const CrossDerivatives* given_cross, Tw
             const char* differences = given_cross ? "" : "finite differences instead of the curves' own tangents";
             keep_worst(tangent, condition("tangents, worst of all: " + numbered("A", i) + of_v + " = " + numbered("b", j) + "'" + of_u, cross.A[i](v), au, size + length(au), differences));
             keep_worst(tangent, condition("tangents, worst of all: " + numbered("B", j) + of_u + " = " + numbered("a", i) + "'" + of_v, cross.B[j](u), av, size + length(av), differences));
-            keep_worst(twists, condition("twists, worst of all: " + numbered("A", i) + "'" + of_v + " = " + numbered("B", j) + "'" + of_u, p, q, size + length(au) + length(av) + length(p), name_of(twist)));
+            const Condition of_twist = condition("twists, worst of all: " + numbered("A", i) + "'" + of_v + " = " + numbered("B", j) + "'" + of_u, p, q, size + length(au) + length(av) + length(p), name_of(twist));
+            keep_worst(twists, of_twist);
+            pairs.push_back(pair_of(of_twist, a[i](v), p, q));
         }
-    DataReport r{{*crossing, *tangent, *twists}, {}, {}};
+    DataReport r{{*crossing, *tangent, *twists}, {}, {}, std::move(pairs)};
     if (!has_corner(a) && !has_corner(b)) r.smooth.push_back(0);
     const Rect over{0, m, 0, n};
     for (std::size_t i = 0; i < a.size(); ++i) r.promises.push_back({numbered("a", i) + " is interpolated", line_u(double(i), over), a[i], 0, 0});

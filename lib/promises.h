@@ -31,10 +31,17 @@ struct Promise {
     std::size_t patch = 0;  // of the surface's patches
     double allowed = 0;     // a residual up to this is what was asked for, whatever the tolerance of the check
 };
+/// Both mixed derivatives at a corner of Hermite data, or where curves of a network cross.
+struct TwistPair {
+    Point at, of_f, of_g;  // of the derivatives across the lines u = const (f, A: x_uv), and across v = const (g, B: x_vu)
+    double gap = 0, tolerance = 0;
+    std::string remedy;
+};
 struct DataReport {
     std::vector<Condition> conditions;
     std::vector<Promise> promises;
     std::vector<std::size_t> smooth;  // patches that are C1 across the lines between their cells
+    std::vector<TwistPair> twists{};  // all of them
 };
 
 DataReport examine(const CoonsCurves& curves);

@@ -15,6 +15,7 @@ struct RenderOptions {
     std::optional<Tolerance> tolerance;      // none: as the scene says
     std::optional<std::array<int, 4>> crop;  // x0,y0,x1,y1 in pixels; the picture is then only that part
     bool exact = false;                      // rays meet the surfaces themselves; the tolerance is for tubes only
+    int grid = 0;                            // not 0: patches are meshed by grids of so many cells each way; nothing is proved then
     std::vector<Aov> aovs;                   // what to put in `layers`
     std::vector<Point> also_fit;             // cameras that fit have these in the picture too: other frames of a film
     double pixels_per_point = 300.0 / 72;    // of the printed picture: what a scene says in points
@@ -28,7 +29,7 @@ struct Picture {
     std::vector<DrawnPart> drawn;  // RenderOptions::vectors, over the image
     Layers layers;               // RenderOptions::aovs, as many pixels as the image
     double tolerance = 0;        // absolute, scene units
-    double certified_error = 0;  // of the meshes that were traced, float rounding included
+    double certified_error = 0;  // of the meshes that were traced, float rounding included; infinite of grids
     std::size_t triangles = 0;
     bool exact = false;
     EmbreeScene::Count rays;     // of an exact picture
