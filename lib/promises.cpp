@@ -66,12 +66,15 @@ DataReport examine(const HermiteData& data, Twist twist) {
             r.twists.push_back(pair_of(r.conditions.back(), f[v](j), a, b));
         }
     const Rect unit;
+    std::optional<Patch> along_u, along_v;
+    double slack_u = 0, slack_v = 0;
+    if (twist == Twist::gregory) along_u = gregory_on_edges(data, true, slack_u), along_v = gregory_on_edges(data, false, slack_v);
     for (const int i : {0, 1}) {
-        r.promises.push_back({name("f", value[i]) + " is interpolated", line_u(i, unit), f[value[i]], 0, 0});
-        r.promises.push_back({name("g", value[i]) + " is interpolated", line_v(i, unit), g[value[i]], 0, 0});
+        r.promises.push_back({name("f", value[i]) + " is interpolated", line_u(i, unit), f[value[i]], 0, 0, 0, along_u, slack_u});
+        r.promises.push_back({name("g", value[i]) + " is interpolated", line_v(i, unit), g[value[i]], 0, 0, 0, along_v, slack_v});
         if (twist != Twist::compatible && twist != Twist::gregory) continue;  // the others give up cross derivatives near incompatible corners
-        r.promises.push_back({name("f", slope[i]) + " is the cross derivative", line_u(i, unit), f[slope[i]], 1, 0});
-        r.promises.push_back({name("g", slope[i]) + " is the cross derivative", line_v(i, unit), g[slope[i]], 1, 0});
+        r.promises.push_back({name("f", slope[i]) + " is the cross derivative", line_u(i, unit), f[slope[i]], 1, 0, 0, along_u, slack_u});
+        r.promises.push_back({name("g", slope[i]) + " is the cross derivative", line_v(i, unit), g[slope[i]], 1, 0, 0, along_v, slack_v});
     }
     return r;
 }

@@ -30,6 +30,8 @@ struct Promise {
     int derivative = 0;
     std::size_t patch = 0;  // of the surface's patches
     double allowed = 0;     // a residual up to this is what was asked for, whatever the tolerance of the check
+    std::optional<Patch> on_edge{};  // a patch that on the line has the same positions and first derivatives up to `slack`, by the surface's formula, and is easier to bound
+    double slack = 0;
 };
 /// Both mixed derivatives at a corner of Hermite data, or where curves of a network cross.
 struct TwistPair {

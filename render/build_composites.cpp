@@ -46,7 +46,11 @@ DataReport moved(DataReport r, const Transform& map) {
     double stretch = 0;
     for (int k = 0; k < 3; ++k) stretch = std::max(stretch, std::hypot(map.m[0][k], map.m[1][k], map.m[2][k]));
     for (TwistPair& t : r.twists) t.at = map.point(t.at), t.of_f = map.vector(t.of_f), t.of_g = map.vector(t.of_g);
-    for (Promise& p : r.promises) p.curve = transformed(p.curve, p.derivative == 0 ? map : linear), p.allowed *= stretch;
+    for (Promise& p : r.promises) {
+        p.curve = transformed(p.curve, p.derivative == 0 ? map : linear), p.allowed *= stretch;
+        // Lengths grow by less than the sum of the columns'; a moved patch is rounded by itself, which its bounds know.
+        if (p.on_edge) p.on_edge = transformed(*p.on_edge, map), p.slack *= 4 * stretch;
+    }
     return r;
 }
 }  // namespace
