@@ -3,6 +3,7 @@
 #include "curves/modify.h"
 #include "error.h"
 #include "patches/compatibility.h"
+#include "patches/nielson.h"
 #include "patches/triangle_edges.h"
 
 namespace isoparm {
@@ -155,6 +156,12 @@ DataReport examine_triangle(const std::array<Curve, 3>& edges, const std::array<
         Promise p = r.promises[k];
         r.promises.push_back({d + " is the cross derivative", p.line, D, 1, 0});
     }
+    return r;
+}
+
+DataReport examine_nielson(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross) {
+    DataReport r = examine_triangle(edges, cross);
+    for (std::size_t k = 0; k < 6; ++k) r.promises[k].on_edge = make_nielson_c1(edges, cross, TrianglePart(k % 3 + 1));
     return r;
 }
 

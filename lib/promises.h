@@ -54,6 +54,8 @@ DataReport examine(const GordonNetwork& network, GordonBlend blend, const Rect& 
 DataReport examine_triangle(const std::array<Curve, 3>& edges);
 /// With cross derivatives in the direction of the medians.
 DataReport examine_triangle(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross);
+/// The same of make_nielson_c1(): on E_k the weights of the other two rays' interpolants have double zeros, so that the one of vertex k alone stands for the surface there.
+DataReport examine_nielson(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross);
 
 /// How far the patch is from keeping the promise: certified bounds for the whole line. Safe to call from every thread.
 JumpBound bound_residual(const Patch& patch, const Promise& promise, double tolerance);

@@ -62,6 +62,7 @@ JumpBound bound_residual(const Patch& of, const Promise& promise, double toleran
     }
     JumpLimits limits;
     limits.tolerance.fill(tolerance);
+    if (promise.on_edge) limits.max_halvings *= 3;  // no singular ends: bounds of derivatives fall by 8 a doubling of the pieces, down to rounding
     JumpBound b = bound_jumps(segments, limits)[kC0];
     if (promise.slack > 0) b.lower = std::max(0.0, rounding::down(b.lower - promise.slack)), b.inside = rounding::up(b.inside + promise.slack), b.upper = rounding::up(b.upper + promise.slack);
     return b;

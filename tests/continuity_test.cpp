@@ -11,6 +11,8 @@
 #include "curves/line.h"
 #include "curves/modify.h"
 #include "patches/bezier_triangle.h"
+#include "patches/coons_hermite.h"
+#include "patches/nielson.h"
 #include "patches/tensor_bezier.h"
 #include "patches/transformed.h"
 #include "promises.h"
@@ -295,6 +297,30 @@ TEST(Continuity, GregorysCrossDerivativesAreProved) {
         EXPECT_NEAR(broken.upper, 1e-6, 2e-8) << p.what;
     }
     for (Promise p : examine(data, Twist::average).promises) EXPECT_FALSE(p.on_edge) << "the mean is a polynomial by itself";
+}
+/// Cross derivatives with slopes of their own at the vertices: on each edge the interpolant of its own ray stands for the surface, and its promise is proved.
+TEST(Continuity, NielsonsCrossDerivativesAreProved) {
+    const std::array<Curve, 3> E{make_bezier({{0, 2, 0}, {0, 1, 0.8}, {0, 0, 0}}), make_bezier({{0, 0, 0}, {1, 0, 0.7}, {2, 0, 0}}), make_bezier({{2, 0, 0}, {1, 1, 0.9}, {0, 2, 0}})};
+    const std::array<Curve, 3> D{make_bezier({{2, -1, 1}, {2, -1, 5}, {2, -1, 0.6}}), make_bezier({{-1, 2, 0.9}, {-1, 2, -3}, {-1, 2, 1.1}}), make_bezier({{-1, -1, 0.5}, {-1, -1, 2}, {-1, -1, 0.7}})};
+    const Patch patch = make_nielson_c1(E, D);
+    const DataReport report = examine_nielson(E, D);
+    ASSERT_EQ(report.promises.size(), 6u);
+    for (const Promise& p : report.promises) {
+        ASSERT_TRUE(p.on_edge);
+        for (int k = 1; k < 64; ++k) {
+            const double s = k / 64.0, u = p.line.from.x + s * (p.line.to.x - p.line.from.x), v = p.line.from.y + s * (p.line.to.y - p.line.from.y);
+            const PointJet x = patch.jet(u, v), y = p.on_edge->jet(u, v);
+            for (int axis = 0; axis < 3; ++axis)
+                for (const auto& [i, j] : {std::pair(0, 0), {1, 0}, {0, 1}}) EXPECT_NEAR(x[axis].coefficient(i, j), y[axis].coefficient(i, j), 1e-12) << p.what << " at " << s;
+        }
+        EXPECT_GT(distance(patch.point(0.3, 0.3), p.on_edge->point(0.3, 0.3)), 1e-3) << "inside it is another surface";
+        const JumpBound kept = bound_residual(patch, p, 1e-7);
+        EXPECT_LE(kept.upper, 1e-7) << p.what;
+        EXPECT_EQ(kept.lower, 0) << p.what;
+        Promise broken = p;
+        broken.curve = transformed(p.curve, Transform::translate({0, 0, 1e-3}));
+        EXPECT_NEAR(bound_residual(patch, broken, 1e-7).lower, 1e-3, 1e-6) << p.what;
+    }
 }
 /// What jets of both sides say at many places of a joint: no sample is above the upper bound, and the lower bound is reached at its place.
 TEST(Continuity, BoundsHoldAllSamplesOfRandomPatches) {
