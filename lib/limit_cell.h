@@ -36,6 +36,8 @@ public:
     LimitCell(Domain domain, LimitFunction limit, int corner, double h, const FaceTangents& tangents = {});
 
     Domain domain() const { return domain_; }
+    /// The limit at the corner: what positions are relative to.
+    const Point& base() const { return base_; }
     /// In local parameters. At a corner without derivatives: the tangents in their place; they are NaN where there are none either.
     LimitFrame operator()(double s, double t) const;
     /// Has it derivatives or tangents at all corners?

@@ -3,6 +3,7 @@
 #include "curves/modify.h"
 #include "error.h"
 #include "patches/compatibility.h"
+#include "patches/nielson.h"
 #include "patches/triangle_edges.h"
 
 namespace isoparm {
@@ -23,6 +24,8 @@ void keep_worst(std::optional<Condition>& worst, const Condition& c) {
     if (!worst || c.gap * worst->tolerance > worst->gap * c.tolerance) worst = c;
 }
 std::string numbered(const char* name, std::size_t k) { return std::string(name) + "[" + std::to_string(k) + "]"; }
+
+TwistPair pair_of(const Condition& c, const Point& at, const Point& of_f, const Point& of_g) { return {at, of_f, of_g, c.gap, c.tolerance, c.remedy}; }
 
 bool has_corner(const std::vector<Curve>& curves) {
     for (const Curve& c : curves)
@@ -61,14 +64,18 @@ DataReport examine(const HermiteData& data, Twist twist) {
             r.conditions.push_back(condition("tangents" + at + name("g", t) + of_g + " = " + name("f", v) + "'" + of_f, g[t](i), fv, size + length(fv)));
             const Point a = f[s].derivative(j), b = g[t].derivative(i);
             r.conditions.push_back(condition("twists" + at + name("f", s) + "'" + of_f + " = " + name("g", t) + "'" + of_g, a, b, size + length(fu) + length(fv) + length(a), name_of(twist)));
+            r.twists.push_back(pair_of(r.conditions.back(), f[v](j), a, b));
         }
     const Rect unit;
+    std::optional<Patch> along_u, along_v;
+    double slack_u = 0, slack_v = 0;
+    if (twist == Twist::gregory) along_u = gregory_on_edges(data, true, slack_u), along_v = gregory_on_edges(data, false, slack_v);
     for (const int i : {0, 1}) {
-        r.promises.push_back({name("f", value[i]) + " is interpolated", line_u(i, unit), f[value[i]], 0, 0});
-        r.promises.push_back({name("g", value[i]) + " is interpolated", line_v(i, unit), g[value[i]], 0, 0});
+        r.promises.push_back({name("f", value[i]) + " is interpolated", line_u(i, unit), f[value[i]], 0, 0, 0, along_u, slack_u});
+        r.promises.push_back({name("g", value[i]) + " is interpolated", line_v(i, unit), g[value[i]], 0, 0, 0, along_v, slack_v});
         if (twist != Twist::compatible && twist != Twist::gregory) continue;  // the others give up cross derivatives near incompatible corners
-        r.promises.push_back({name("f", slope[i]) + " is the cross derivative", line_u(i, unit), f[slope[i]], 1, 0});
-        r.promises.push_back({name("g", slope[i]) + " is the cross derivative", line_v(i, unit), g[slope[i]], 1, 0});
+        r.promises.push_back({name("f", slope[i]) + " is the cross derivative", line_u(i, unit), f[slope[i]], 1, 0, 0, along_u, slack_u});
+        r.promises.push_back({name("g", slope[i]) + " is the cross derivative", line_v(i, unit), g[slope[i]], 1, 0, 0, along_v, slack_v});
     }
     return r;
 }
@@ -83,6 +90,7 @@ DataReport examine(const Network& given, const CrossDerivatives* given_cross, Tw
     for (Curve& c : cross.B) c = reparametrized(c, 0, m);
     const double size = std::max(size_of({&a.front(), &a.back()}), size_of({&b.front(), &b.back()}));
     std::optional<Condition> crossing, tangent, twists;
+    std::vector<TwistPair> pairs;
     for (std::size_t i = 0; i < a.size(); ++i)
         for (std::size_t j = 0; j < b.size(); ++j) {
             const double u = double(i), v = double(j);
@@ -92,9 +100,11 @@ DataReport examine(const Network& given, const CrossDerivatives* given_cross, Tw
             const char* differences = given_cross ? "" : "finite differences instead of the curves' own tangents";
             keep_worst(tangent, condition("tangents, worst of all: " + numbered("A", i) + of_v + " = " + numbered("b", j) + "'" + of_u, cross.A[i](v), au, size + length(au), differences));
             keep_worst(tangent, condition("tangents, worst of all: " + numbered("B", j) + of_u + " = " + numbered("a", i) + "'" + of_v, cross.B[j](u), av, size + length(av), differences));
-            keep_worst(twists, condition("twists, worst of all: " + numbered("A", i) + "'" + of_v + " = " + numbered("B", j) + "'" + of_u, p, q, size + length(au) + length(av) + length(p), name_of(twist)));
+            const Condition of_twist = condition("twists, worst of all: " + numbered("A", i) + "'" + of_v + " = " + numbered("B", j) + "'" + of_u, p, q, size + length(au) + length(av) + length(p), name_of(twist));
+            keep_worst(twists, of_twist);
+            pairs.push_back(pair_of(of_twist, a[i](v), p, q));
         }
-    DataReport r{{*crossing, *tangent, *twists}, {}, {}};
+    DataReport r{{*crossing, *tangent, *twists}, {}, {}, std::move(pairs)};
     if (!has_corner(a) && !has_corner(b)) r.smooth.push_back(0);
     const Rect over{0, m, 0, n};
     for (std::size_t i = 0; i < a.size(); ++i) r.promises.push_back({numbered("a", i) + " is interpolated", line_u(double(i), over), a[i], 0, 0});
@@ -146,6 +156,12 @@ DataReport examine_triangle(const std::array<Curve, 3>& edges, const std::array<
         Promise p = r.promises[k];
         r.promises.push_back({d + " is the cross derivative", p.line, D, 1, 0});
     }
+    return r;
+}
+
+DataReport examine_nielson(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross) {
+    DataReport r = examine_triangle(edges, cross);
+    for (std::size_t k = 0; k < 6; ++k) r.promises[k].on_edge = make_nielson_c1(edges, cross, TrianglePart(k % 3 + 1));
     return r;
 }
 

@@ -30,11 +30,20 @@ struct Promise {
     int derivative = 0;
     std::size_t patch = 0;  // of the surface's patches
     double allowed = 0;     // a residual up to this is what was asked for, whatever the tolerance of the check
+    std::optional<Patch> on_edge{};  // a patch that on the line has the same positions and first derivatives up to `slack`, by the surface's formula, and is easier to bound
+    double slack = 0;
+};
+/// Both mixed derivatives at a corner of Hermite data, or where curves of a network cross.
+struct TwistPair {
+    Point at, of_f, of_g;  // of the derivatives across the lines u = const (f, A: x_uv), and across v = const (g, B: x_vu)
+    double gap = 0, tolerance = 0;
+    std::string remedy;
 };
 struct DataReport {
     std::vector<Condition> conditions;
     std::vector<Promise> promises;
     std::vector<std::size_t> smooth;  // patches that are C1 across the lines between their cells
+    std::vector<TwistPair> twists{};  // all of them
 };
 
 DataReport examine(const CoonsCurves& curves);
@@ -45,6 +54,8 @@ DataReport examine(const GordonNetwork& network, GordonBlend blend, const Rect& 
 DataReport examine_triangle(const std::array<Curve, 3>& edges);
 /// With cross derivatives in the direction of the medians.
 DataReport examine_triangle(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross);
+/// The same of make_nielson_c1(): on E_k the weights of the other two rays' interpolants have double zeros, so that the one of vertex k alone stands for the surface there.
+DataReport examine_nielson(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross);
 
 /// How far the patch is from keeping the promise: certified bounds for the whole line. Safe to call from every thread.
 JumpBound bound_residual(const Patch& patch, const Promise& promise, double tolerance);

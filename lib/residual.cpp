@@ -35,7 +35,8 @@ Models model_of(const Curve& curve, const Vec3<Polynomial>& exact, double from, 
 
 }  // namespace
 
-JumpBound bound_residual(const Patch& patch, const Promise& promise, double tolerance) {
+JumpBound bound_residual(const Patch& of, const Promise& promise, double tolerance) {
+    const Patch& patch = promise.on_edge ? *promise.on_edge : of;
     const Vec2 from = promise.line.from, to = promise.line.to, cross = promise.line.cross;
     const Curve& curve = promise.curve;
     // Cut where the line leaves a cell of the patch, and at the breaks of the curve.
@@ -61,7 +62,10 @@ JumpBound bound_residual(const Patch& patch, const Promise& promise, double tole
     }
     JumpLimits limits;
     limits.tolerance.fill(tolerance);
-    return bound_jumps(segments, limits)[kC0];
+    if (promise.on_edge) limits.max_halvings *= 3;  // no singular ends: bounds of derivatives fall by 8 a doubling of the pieces, down to rounding
+    JumpBound b = bound_jumps(segments, limits)[kC0];
+    if (promise.slack > 0) b.lower = std::max(0.0, rounding::down(b.lower - promise.slack)), b.inside = rounding::up(b.inside + promise.slack), b.upper = rounding::up(b.upper + promise.slack);
+    return b;
 }
 
 }  // namespace isoparm

@@ -3,29 +3,11 @@
 #include <cmath>
 
 #include "error.h"
+#include "grid_mesh.h"
 #include "study_methods.h"
 
 namespace isoparm {
 namespace {
-
-/// Every cell between breaks cut into n x n rectangles; the triangular domain into n x n triangles.
-Leaves grid(const Patch& patch, std::uint32_t n) {
-    Leaves leaves(patch, n);
-    std::vector<Leaf> list;
-    for (const Leaf& cell : leaves.list) {
-        const auto [i0, j0] = cell.corner[0];
-        for (std::uint32_t i = i0; i < i0 + n; ++i)
-            for (std::uint32_t j = j0; j < (cell.sides == 3 ? n - i : j0 + n); ++j) {
-                if (cell.sides == 4)
-                    list.push_back({{LatticePoint{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}, 4});
-                else
-                    list.push_back({{LatticePoint{i, j}, {i + 1, j}, {i, j + 1}, {i, j}}, 3});
-                if (cell.sides == 3 && i + j + 1 < n) list.push_back({{LatticePoint{i + 1, j}, {i + 1, j + 1}, {i, j + 1}, {i + 1, j}}, 3});
-            }
-    }
-    leaves.list = std::move(list);
-    return leaves;
-}
 
 class Search {
 public:
@@ -59,7 +41,7 @@ private:
         const double triangles = per_square_ * n * n;
         if (triangles > double(input_.max_triangles)) not_reached(input_, triangles);
         std::vector<Leaves> leaves;
-        for (const Member& m : input_.surface) leaves.push_back(grid(m.patch, n));
+        for (const Member& m : input_.surface) leaves.push_back(grid_leaves(m.patch, n));
         return mesh_of(input_.surface, topology_, leaves);
     }
     /// The error with n, which becomes the best or what fails.

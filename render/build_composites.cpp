@@ -32,19 +32,25 @@ DataReport together(const std::vector<Examined>& members) {
     for (const Examined& m : members) {
         DataReport r = m.examine();
         for (Condition& c : r.conditions) c.what = m.name + ": " + c.what, all.conditions.push_back(c);
+        all.twists.insert(all.twists.end(), r.twists.begin(), r.twists.end());
         for (const std::size_t p : r.smooth) all.smooth.push_back(p + m.first_patch);
         for (Promise& p : r.promises) p.what = m.name + ": " + p.what, p.patch += m.first_patch, all.promises.push_back(p);
     }
     return all;
 }
 
-/// Conditions are those of the data before the map.
+/// Conditions, and the gaps of twists, are those of the data before the map.
 DataReport moved(DataReport r, const Transform& map) {
     Transform linear = map;
     for (auto& row : linear.m) row[3] = 0;
     double stretch = 0;
     for (int k = 0; k < 3; ++k) stretch = std::max(stretch, std::hypot(map.m[0][k], map.m[1][k], map.m[2][k]));
-    for (Promise& p : r.promises) p.curve = transformed(p.curve, p.derivative == 0 ? map : linear), p.allowed *= stretch;
+    for (TwistPair& t : r.twists) t.at = map.point(t.at), t.of_f = map.vector(t.of_f), t.of_g = map.vector(t.of_g);
+    for (Promise& p : r.promises) {
+        p.curve = transformed(p.curve, p.derivative == 0 ? map : linear), p.allowed *= stretch;
+        // Lengths grow by less than the sum of the columns'; a moved patch is rounded by itself, which its bounds know.
+        if (p.on_edge) p.on_edge = transformed(*p.on_edge, map), p.slack *= 4 * stretch;
+    }
     return r;
 }
 }  // namespace

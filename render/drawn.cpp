@@ -2,6 +2,7 @@
 
 #include "comb.h"
 #include "error.h"
+#include "twist_arrows.h"
 
 namespace isoparm {
 namespace {
@@ -66,6 +67,7 @@ std::vector<Point> drawn_points(const Scene& scene, const std::vector<SceneObjec
         switch (o.kind) {
             case SceneObject::Kind::surface:
                 for (const Member& m : surface_of(scene, o).patches) sample(m.patch, points);
+                for (const TwistArrow& t : twist_arrows(surface_of(scene, o), o.twists, size)) points.push_back(t.tip_f), points.push_back(t.tip_g);
                 break;
             case SceneObject::Kind::curve: {
                 const Curve& c = curve_of(scene, o);

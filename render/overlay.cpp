@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <numbers>
 
 #include "axes.h"
@@ -14,6 +15,7 @@
 #include "outlines.h"
 #include "palette.h"
 #include "surface_lines.h"
+#include "twist_arrows.h"
 
 namespace isoparm {
 namespace {
@@ -67,6 +69,7 @@ private:
         switch (o.kind) {
             case Kind::surface:
                 add_jumps(o);
+                add_twists(o);
                 if (!o.boundary) return;
                 for (const DrawnCurve& edge : drawn_edges(surface_of(scene_, o).patches, size_))
                     add(o, points_of(edge), curve_color(), 1, radius);
@@ -119,6 +122,24 @@ private:
                 if (jump >= 0) add_line(points_between(e.points[k], e.points[k + 1]), {scale.color(jump), 1, o.jumps.width * pixel_, {}, Hidden::hide}, sight_, 0, drawing_);
             }
         if (o.jumps.legend) scales_.push_back(scale);
+    }
+    void add_twists(const SceneObject& o) {
+        if (!o.twists.on) return;
+        const Surface& surface = surface_of(scene_, o);
+        for (const TwistArrow& t : twist_arrows(surface, o.twists, size_)) {
+            for (const auto& [tip, which] : {std::pair(t.tip_f, 0), {t.tip_g, 1}}) {
+                add_arrow(points_between(t.foot, tip), {twist_color(which), 1, o.twists.width * pixel_, {}, Hidden::ghost}, camera_, sight_, drawing_);
+                avoid(points_between(t.foot, tip), 0);
+            }
+            Label& label = labels_.emplace_back();
+            label.text = parse_math_text(t.gap, true);
+            label.hidden = Hidden::show;
+            request(label, {anchor(t.tip_f, 0), anchor(t.tip_g, 0), anchor(t.foot, 0)});
+        }
+        if (!o.twists.legend) return;
+        add_twist_legend(surface, o.twists, size_, letter_, drawing_);
+        for (double x = 1; x < 12; x += 0.8)
+            for (double y = 0.8; y < 4; y += 0.8) obstacles_.push_back({{x * letter_, y * letter_}, 0.4 * letter_});
     }
     void add_comb(const SceneObject& o) {
         const LineLook look{o.comb.color.value_or(point_color()), o.opacity, o.comb.width * pixel_, {}, Hidden::show};
@@ -261,6 +282,7 @@ private:
     Vec2 middle_;
     std::vector<Obstacle> obstacles_;
     std::vector<LabelRequest> requests_;
+    std::deque<Label> labels_;  // that no object has
     std::vector<ColorScale> scales_;  // for legends
     Drawing drawing_;
 };
@@ -271,7 +293,7 @@ Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, con
                 const Camera& camera, double pixel, double letter, bool isolines) {
     const auto vectors = [&](const SceneObject& o) {
         return o.line.width > 0 || o.outline.line.width > 0 || (isolines && o.isolines.u + o.isolines.v > 0) || !o.label.text.empty() || !o.net_labels.empty() || o.kind == Kind::axes ||
-               o.color_by.legend || o.jumps.of != JumpHeat::Of::none || o.comb.teeth > 0;
+               o.color_by.legend || o.jumps.of != JumpHeat::Of::none || o.comb.teeth > 0 || o.twists.on;
     };
     if (std::none_of(objects.begin(), objects.end(), vectors)) return {};
     return Overlay(scene, traced, camera, pixel, letter, isolines).run(objects);
@@ -287,7 +309,7 @@ Camera camera_of(const View& view) {
     for (const SceneObject& o : view.objects) {
         if (o.kind == Kind::axes)
             room = {std::max(room.x, 2.4 * view.letter), std::max(room.y, 1.6 * view.letter)};
-        else if (!o.label.text.empty() || !o.net_labels.empty())
+        else if (!o.label.text.empty() || !o.net_labels.empty() || o.twists.on)
             room = {std::max(room.x, 0.8 * view.letter), std::max(room.y, 0.5 * view.letter)};
     }
     return make_camera(view.camera, view.fitted, view.width - legend_room(view.objects, view.letter, view.width), view.height, room);

@@ -252,6 +252,7 @@ struct Quality {
     std::vector<Aov> aovs;
     bool exact, vectors;
     double most_halved;
+    int grid;
 };
 
 /// Puts a drawing over a picture; (x,y) is where its pixels begin there.
@@ -273,7 +274,7 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     Picture picture;
     picture.tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
     auto start = std::chrono::steady_clock::now();
-    TracedScene traced = build_traced_scene(scene, view.objects, picture.tolerance, part_of_progress(0, kMeshShare), how.exact);
+    TracedScene traced = build_traced_scene(scene, view.objects, picture.tolerance, part_of_progress(0, kMeshShare), how.exact, how.grid);
     for (Thing& thing : traced.things) thing.isolines.width = how.vectors ? 0 : thing.isolines.width * how.pixel;
     picture.certified_error = traced.certified_error;
     picture.triangles = traced.triangles;
@@ -319,7 +320,7 @@ Picture render(const Scene& scene, const RenderOptions& options) {
     const Area area = checked_area(options, width, height);
     const Quality how{
         checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples),
-        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs, options.exact, options.vectors, options.most_halved};
+        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs, options.exact, options.vectors, options.most_halved, options.grid};
     double reached = 0;  // progress never runs backwards, whatever its parts report
     std::optional<double> letter;
     if (options.letter_points) letter = *options.letter_points * options.pixels_per_point;

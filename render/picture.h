@@ -16,6 +16,7 @@ struct RenderOptions {
     std::optional<std::array<int, 4>> crop;  // x0,y0,x1,y1 in pixels; the picture is then only that part
     bool exact = false;                      // rays meet the surfaces themselves; the tolerance is for tubes only
     double most_halved = 3e7;                // boxes that exact rays may look at; and 20 a ray, if that is more. Beyond it Error(budget)
+    int grid = 0;                            // not 0: patches are meshed by grids of so many cells each way; nothing is proved then
     std::vector<Aov> aovs;                   // what to put in `layers`
     std::vector<Point> also_fit;             // cameras that fit have these in the picture too: other frames of a film
     double pixels_per_point = 300.0 / 72;    // of the printed picture: what a scene says in points
@@ -29,7 +30,7 @@ struct Picture {
     std::vector<DrawnPart> drawn;  // RenderOptions::vectors, over the image
     Layers layers;               // RenderOptions::aovs, as many pixels as the image
     double tolerance = 0;        // absolute, scene units
-    double certified_error = 0;  // of the meshes that were traced, float rounding included
+    double certified_error = 0;  // of the meshes that were traced, float rounding included; infinite of grids
     std::size_t triangles = 0;
     bool exact = false;
     EmbreeScene::Count rays;     // of an exact picture

@@ -61,6 +61,7 @@ void set_points(std::vector<SceneObject>& objects, double pixels) {
         set_line(o.outline.line);
         set(o.comb.width);
         set(o.jumps.width);
+        set(o.twists.width);
         if (o.label.size) set(*o.label.size);
         for (Label& l : o.net_labels)
             if (l.size) set(*l.size);

@@ -104,6 +104,14 @@ struct Comb {
     std::optional<Color> color;
 };
 
+/// Both mixed derivatives of a surface's data as arrows, at each corner where they disagree.
+struct TwistArrows {
+    bool on = false;
+    std::optional<double> scale;  // length of the arrow of a twist of length 1, scene units; default: the longest is a sixth of the scene's size
+    Extent width = 3;             // pixels
+    bool legend = false;
+};
+
 /// Coordinate axes through `origin`, each over its range; ticks in ascending order.
 struct Axes {
     struct Axis {
@@ -127,6 +135,7 @@ struct SceneObject {
     Isolines isolines;
     ColorBy color_by;              // Kind::surface
     JumpHeat jumps;                // Kind::surface
+    TwistArrows twists;            // Kind::surface
     Comb comb;                     // Kind::curve
     bool boundary = false;         // draw the patches' boundary curves as tubes
     Outline outline;               // Kind::surface

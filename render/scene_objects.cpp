@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "promises.h"
 #include "scene_light.h"
 #include "suggest.h"
 
@@ -191,6 +192,24 @@ Comb read_comb(const Json& j, const SceneValues& values) {
     return comb;
 }
 
+TwistArrows read_twists(const Json& j, const Json& surface, SceneBuilder& builder) {
+    const SceneValues& values = builder.values();
+    TwistArrows twists;
+    if (j.is(Kind::boolean)) twists.on = j.boolean();
+    else {
+        must_be_object(j, "true, or arrows {\"scale\": s, \"width\": pixels, \"legend\": true}");
+        j.allow_keys({"scale", "width", "legend"});
+        twists.on = true;
+        if (const auto scale = j.find("scale")) twists.scale = values.positive(*scale, "a positive scale: the length of the arrow of a twist of length 1");
+        if (const auto width = j.find("width")) twists.width = read_pixels(*width, values, 1000, "a width");
+        if (const auto legend = j.find("legend")) twists.legend = values.boolean(*legend);
+    }
+    const auto examine = builder.surface(surface).examine;
+    if (twists.on && (!examine || examine().twists.empty()))
+        j.fail_at_key("found \"twists\" of " + quoted(surface.string()) + ", expected a surface whose data have twists: coons_hermite or network, whole (no \"part\"), or a composite or a moved copy of such");
+    return twists;
+}
+
 // ---- axes -----------------------------------------------------------------------------------------------------------
 
 constexpr const char* kAxisNames[3] = {"x", "y", "z"};
@@ -259,7 +278,7 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
 
     SceneObject o;
     if (surface) {
-        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "outline", "material", "radius", "label", "line", "dash", "hidden", "color_by", "range", "legend", "stripes", "direction", "jumps"});
+        j.allow_keys({"surface", "color", "back", "opacity", "isolines", "boundary", "outline", "material", "radius", "label", "line", "dash", "hidden", "color_by", "range", "legend", "stripes", "direction", "jumps", "twists"});
         o.kind = SceneObject::Kind::surface;
         o.name = values.text(*surface, "the name of a surface");
         builder.surface(*surface);
@@ -270,6 +289,7 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
             for (const char* key : {"range", "legend", "stripes", "direction"})
                 if (const auto extra = j.find(key)) extra->fail_at_key("found " + quoted(key) + " without \"color_by\", expected what the colours say");
         if (const auto jumps = j.find("jumps")) o.jumps = read_jumps(*jumps, values);
+        if (const auto twists = j.find("twists")) o.twists = read_twists(*twists, *surface, builder);
         if (const auto boundary = j.find("boundary")) o.boundary = values.boolean(*boundary);
         if (const auto outline = j.find("outline")) o.outline = read_outline(*outline, values);
     } else if (curve) {

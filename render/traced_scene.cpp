@@ -6,6 +6,7 @@
 
 #include "drawn.h"
 #include "error.h"
+#include "grid_mesh.h"
 #include "palette.h"
 #include "tessellate.h"
 #include "tubes.h"
@@ -41,8 +42,8 @@ constexpr double kFrontTolerance = 2e-3;  // of meshes that only tell front from
 
 class Builder {
 public:
-    Builder(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress, bool exact)
-        : scene_(scene), objects_(objects), tolerance_(tolerance), progress_(progress), exact_(exact) {
+    Builder(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress, bool exact, int grid)
+        : scene_(scene), objects_(objects), tolerance_(tolerance), progress_(progress), exact_(exact), grid_(grid) {
         const Bounds box = bounding_box(scene);
         size_ = box.diagonal() > 0 ? box.diagonal() : 1;
         result_.embree = std::make_unique<EmbreeScene>(0.5 * (box.low + box.high));
@@ -109,7 +110,7 @@ private:
             for (const MeshPart& part : mesh.parts) {
                 thing.part = &part;
                 thing.patch = &surface.patches[part.member].patch;
-                thing.error = part.certified_error;
+                thing.error = grid_ > 0 ? errors_[&surface][std::size_t(&part - mesh.parts.data())] : part.certified_error;
                 result_.things.push_back(thing);
                 if (exact_) add_patch(result_.things.back(), surface);
             }
@@ -135,6 +136,7 @@ private:
     const Mesh& mesh_of(const Surface& surface, std::size_t objects) {
         const Mesh*& known = mesh_of_[&surface];
         if (known) return *known;
+        if (grid_ > 0) return *(known = &grid_of(surface));
         TessellationOptions options;
         options.tolerance = mesh_tolerance_;
         options.study = false;
@@ -151,6 +153,15 @@ private:
             result_.triangles += t.mesh.triangle_count();
         }
         return *(known = &result_.meshes.emplace_back(std::move(t.mesh)));
+    }
+
+    /// Errors that are seen, where others have proved ones.
+    const Mesh& grid_of(const Surface& surface) {
+        GridMesh grid = grid_mesh(surface.patches, static_cast<std::uint32_t>(grid_), join_tolerance(1e-4 * size_, size_));
+        for (std::size_t k = 0; k < grid.mesh.parts.size(); ++k) errors_[&surface].push_back(grid.sampled_error[k]);
+        result_.certified_error = HUGE_VAL;
+        result_.triangles += grid.mesh.triangle_count();
+        return result_.meshes.emplace_back(std::move(grid.mesh));
     }
 
     void add_boundary(const SceneObject& o, const Surface& surface) {
@@ -222,8 +233,10 @@ private:
     const std::function<void(double)>& progress_;
     TracedScene result_;
     bool exact_;
+    int grid_;
     std::uint32_t group_ = 0;
     std::map<const Surface*, const Mesh*> mesh_of_;
+    std::map<const Surface*, std::vector<double>> errors_;  // of grids
     std::map<const Patch*, const ExactPatch*> exact_of_;
     std::size_t done_ = 0, surfaces_ = 0;
 };
@@ -234,8 +247,8 @@ TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::
     return build_traced_scene(scene, drawn_objects(scene), tolerance, progress, exact);
 }
 TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress,
-                               bool exact) {
-    return Builder(scene, objects, tolerance, progress, exact).run();
+                               bool exact, int grid) {
+    return Builder(scene, objects, tolerance, progress, exact, grid).run();
 }
 
 }  // namespace isoparm

@@ -40,8 +40,9 @@ struct TracedScene {
 /// which must live as long. Throws what tessellate() throws, with the surface's name. `exact`: rays meet the patches themselves, and the
 /// meshes, coarse ones, only tell which side is the front.
 TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress, bool exact = false);
-/// Only some objects of the scene.
+/// Only some objects of the scene. `grid`: not 0 where patches are meshed by grids of so many cells each way (grid_mesh.h), of whose error nothing is proved: then
+/// certified_error is infinite.
 TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress,
-                               bool exact = false);
+                               bool exact = false, int grid = 0);
 
 }  // namespace isoparm

@@ -11,6 +11,8 @@
 #include "curves/line.h"
 #include "curves/modify.h"
 #include "patches/bezier_triangle.h"
+#include "patches/coons_hermite.h"
+#include "patches/nielson.h"
 #include "patches/tensor_bezier.h"
 #include "patches/transformed.h"
 #include "promises.h"
@@ -249,6 +251,75 @@ TEST(Continuity, ResidualsOfInterpolationAreCertified) {
         Promise broken = kept;
         broken.curve = transformed(kept.curve, Transform::translate({0.6 * h, 0, 0.8 * h}));
         expect_holds(bound_residual(patch, broken, 1e-9), h, kept.what);
+    }
+}
+/// Hermite data whose four corners' twists disagree: a part along z of the cross derivatives that vanishes with its slope given at the ends.
+HermiteData disagreeing_twists() {
+    const auto b = [](std::vector<Point> p) { return make_bezier(std::move(p)); };
+    return {{b({{0, 0, 0}, {0, 1, 1}, {0, 2, 0}}), b({{2, 0, 2}, {2, 0.5, 9}, {2.1, 0, 2}, {2, 0, 2}}), b({{2, 0, -2}, {2, 0.3, 5}, {2, 0, -2}}), b({{2, 0, 0}, {2, 1, 1}, {2, 2, 0}})},
+            {b({{0, 0, 0}, {1, 0, 1}, {2, 0, 0}}), b({{0, 2, 2}, {0.2, 2, -3}, {0, 2, 2}}), b({{0, 2, -2}, {0, 2, 4}, {0, 2.2, 1}, {0, 2, -2}}), b({{0, 2, 0}, {1, 2, 1}, {2, 2, 0}})}};
+}
+TEST(Continuity, GregorysSquareIsOnItsEdgesWhatStandsForItThere) {
+    const HermiteData data = disagreeing_twists();
+    const Patch gregory = make_coons_hermite(data, Twist::gregory);
+    for (const bool of_f : {true, false}) {
+        double slack = 1;
+        const Patch on_edge = gregory_on_edges(data, of_f, slack);
+        EXPECT_LT(slack, 1e-13);
+        double most = 0, away = 0;
+        for (const double edge : {0.0, 1.0})
+            for (int k = 1; k < 64; ++k) {
+                const double t = k / 64.0, u = of_f ? edge : t, v = of_f ? t : edge;
+                const PointJet x = gregory.jet(u, v), y = on_edge.jet(u, v);
+                for (int axis = 0; axis < 3; ++axis)
+                    for (const auto& [i, j] : {std::pair(0, 0), {1, 0}, {0, 1}}) most = std::max(most, std::fabs(x[axis].coefficient(i, j) - y[axis].coefficient(i, j)));
+                const Point p = gregory.point(0.3, t), q = on_edge.point(0.3, t);
+                away = std::max(away, distance(p, q));
+            }
+        EXPECT_LT(most, 1e-13) << of_f;
+        EXPECT_GT(away, 1e-2) << "inside it is another surface";
+    }
+}
+TEST(Continuity, GregorysCrossDerivativesAreProved) {
+    const HermiteData data = disagreeing_twists();
+    const Patch gregory = make_coons_hermite(data, Twist::gregory);
+    const DataReport report = examine(data, Twist::gregory);
+    ASSERT_EQ(report.promises.size(), 8u);
+    ASSERT_EQ(report.twists.size(), 4u);
+    for (const TwistPair& t : report.twists) EXPECT_GT(t.gap, 1);
+    for (Promise p : report.promises) {
+        const JumpBound kept = bound_residual(gregory, p, 1e-11);
+        EXPECT_LT(kept.upper, 1e-11) << p.what;
+        EXPECT_EQ(kept.lower, 0) << p.what;
+        p.curve = transformed(p.curve, Transform::translate({0, 0, 1e-6}));  // broken by a millionth
+        const JumpBound broken = bound_residual(gregory, p, 1e-11);
+        EXPECT_NEAR(broken.lower, 1e-6, 1e-9) << p.what;
+        EXPECT_NEAR(broken.upper, 1e-6, 2e-8) << p.what;
+    }
+    for (Promise p : examine(data, Twist::average).promises) EXPECT_FALSE(p.on_edge) << "the mean is a polynomial by itself";
+}
+/// Cross derivatives with slopes of their own at the vertices: on each edge the interpolant of its own ray stands for the surface, and its promise is proved.
+TEST(Continuity, NielsonsCrossDerivativesAreProved) {
+    const std::array<Curve, 3> E{make_bezier({{0, 2, 0}, {0, 1, 0.8}, {0, 0, 0}}), make_bezier({{0, 0, 0}, {1, 0, 0.7}, {2, 0, 0}}), make_bezier({{2, 0, 0}, {1, 1, 0.9}, {0, 2, 0}})};
+    const std::array<Curve, 3> D{make_bezier({{2, -1, 1}, {2, -1, 5}, {2, -1, 0.6}}), make_bezier({{-1, 2, 0.9}, {-1, 2, -3}, {-1, 2, 1.1}}), make_bezier({{-1, -1, 0.5}, {-1, -1, 2}, {-1, -1, 0.7}})};
+    const Patch patch = make_nielson_c1(E, D);
+    const DataReport report = examine_nielson(E, D);
+    ASSERT_EQ(report.promises.size(), 6u);
+    for (const Promise& p : report.promises) {
+        ASSERT_TRUE(p.on_edge);
+        for (int k = 1; k < 64; ++k) {
+            const double s = k / 64.0, u = p.line.from.x + s * (p.line.to.x - p.line.from.x), v = p.line.from.y + s * (p.line.to.y - p.line.from.y);
+            const PointJet x = patch.jet(u, v), y = p.on_edge->jet(u, v);
+            for (int axis = 0; axis < 3; ++axis)
+                for (const auto& [i, j] : {std::pair(0, 0), {1, 0}, {0, 1}}) EXPECT_NEAR(x[axis].coefficient(i, j), y[axis].coefficient(i, j), 1e-12) << p.what << " at " << s;
+        }
+        EXPECT_GT(distance(patch.point(0.3, 0.3), p.on_edge->point(0.3, 0.3)), 1e-3) << "inside it is another surface";
+        const JumpBound kept = bound_residual(patch, p, 1e-7);
+        EXPECT_LE(kept.upper, 1e-7) << p.what;
+        EXPECT_EQ(kept.lower, 0) << p.what;
+        Promise broken = p;
+        broken.curve = transformed(p.curve, Transform::translate({0, 0, 1e-3}));
+        EXPECT_NEAR(bound_residual(patch, broken, 1e-7).lower, 1e-3, 1e-6) << p.what;
     }
 }
 /// What jets of both sides say at many places of a joint: no sample is above the upper bound, and the lower bound is reached at its place.

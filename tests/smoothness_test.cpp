@@ -16,6 +16,7 @@
 #include "legend.h"
 #include "patches/tensor_bezier.h"
 #include "picture.h"
+#include "twist_arrows.h"
 #include "run_program.h"
 
 namespace isoparm::test {
@@ -185,6 +186,75 @@ TEST(Smoothness, PicturesShowTheColoursOfTheMap) {
     EXPECT_GT(dark, 8);
     EXPECT_GT(light, 8);
 }
+// Scene s004_incompatible_twists: x_uv = (0, 0, 2 (a-2)), x_vu = (0, 0, 2 (b-2)) at (0,0), their opposites at the corners beside; a = 7, b = -3.
+TEST(TwistArrows, AreBothMixedDerivativesWhereTheyDisagree) {
+    const std::string path = std::string(ISOPARM_SOURCE_DIR) + "/scenes/s004_incompatible_twists.json";
+    const auto arrows = [&](const std::map<std::string, double>& set, TwistArrows how) {
+        const Scene s = load_scene(path, set);
+        return twist_arrows(*s.find_surface("square"), how, 3);
+    };
+    TwistArrows how{true, 0.1, 3, false};
+    const auto all = arrows({}, how);
+    ASSERT_EQ(all.size(), 4u);
+    for (const TwistArrow& t : all) {
+        const double sign = (t.foot.x == 0) == (t.foot.y == 0) ? 1 : -1;
+        EXPECT_LT(distance(t.tip_f - t.foot, {0, 0, sign}), 1e-15);
+        EXPECT_LT(distance(t.tip_g - t.foot, {0, 0, -sign}), 1e-15);
+        EXPECT_EQ(t.gap, "gap 20");
+    }
+    how.scale.reset();
+    EXPECT_NEAR(distance(arrows({}, how)[0].foot, arrows({}, how)[0].tip_f), 0.5, 1e-15) << "a sixth of the size";
+    EXPECT_EQ(arrows({{"b", 6}}, how)[0].gap, "gap 2");
+    EXPECT_TRUE(arrows({{"b", 7}}, how).empty()) << "twists that agree";
+    how.on = false;
+    EXPECT_TRUE(arrows({}, how).empty());
+}
+TEST(TwistArrows, MoveWithTheSurfaceAndAreDrawn) {
+    const TemporaryFolder t;
+    const auto scene = [](const std::string& objects) {
+        return R"({ "isoparm": 1, "curves": {
+          "a0": { "type": "line", "points": [[0,0,0],[0,1,0]] }, "a1": { "type": "line", "points": [[1,0,0],[1,1,0]] },
+          "b0": { "type": "line", "points": [[0,0,0],[1,0,0]] }, "b1": { "type": "line", "points": [[0,1,0],[1,1,0]] },
+          "A": { "type": "bezier", "points": [[1,0,0],[1,0,1],[1,0,0]] }, "B": { "type": "bezier", "points": [[0,1,0],[0,1,0],[0,1,0]] } },
+          "surfaces": { "N": { "type": "network", "a": ["a0","a1"], "b": ["b0","b1"], "cross": { "A": ["A","A"], "B": ["B","B"] } },
+            "far": { "type": "transform", "surface": "N", "scale": [2,2,-3], "translate": [5,0,0] }, "both": { "type": "composite", "members": ["N", "far"] },
+            "plain": { "type": "coons", "c0": "b0", "c1": "b1", "d0": "a0", "d1": "a1" } },
+          "objects": [)" + objects + R"(],
+          "camera": { "eye": [0.5,-9,1], "target": [0.5,0,0], "up": [0,0,1], "fov": 30 }, "image": { "width": 160, "height": 120, "samples": 4, "background": "white" } })";
+    };
+    write_all(t / "s.json", scene(R"({ "surface": "both", "twists": { "width": 4, "scale": 0.5, "legend": true } })"));
+    const Scene s = load_scene(t / "s.json");
+    const auto arrows = twist_arrows(*s.find_surface("both"), {true, 1.0, 3, false}, 1);
+    ASSERT_EQ(arrows.size(), 8u);
+    EXPECT_LT(distance(arrows[0].tip_f - arrows[0].foot, {0, 0, 2}), 1e-14);
+    EXPECT_LT(distance(arrows[4].foot, {5, 0, 0}), 1e-14);
+    EXPECT_LT(distance(arrows[4].tip_f - arrows[4].foot, {0, 0, -6}), 1e-14);
+    EXPECT_EQ(arrows[4].gap, "gap 2") << "as check has it, of the data before the map";
+
+    const Image image = render(s, {}).image;
+    int blue = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) blue += image.at(x, y)[2] > 0.3f && image.at(x, y)[0] < 0.1f;
+    EXPECT_GT(blue, 40) << "pixels of the arrows x_uv";
+
+    const auto fails = [&](const std::string& object, const std::string& message) {
+        write_all(t / "s.json", scene(object));
+        try {
+            load_scene(t / "s.json");
+            ADD_FAILURE() << object;
+        } catch (const Error& e) {
+            EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
+        }
+    };
+    fails(R"({ "surface": "plain", "twists": true })", "expected a surface whose data have twists");
+    fails(R"({ "surface": "N", "twists": 3 })", "expected true, or arrows");
+    fails(R"({ "surface": "N", "twists": { "scale": 0 } })", "a positive scale");
+    fails(R"({ "surface": "N", "twists": { "scale": -1e300 } })", "a positive scale");
+    fails(R"({ "surface": "N", "twists": { "width": 0 } })", "a width");
+    fails(R"({ "surface": "N", "twists": { "size": 1 } })", "size");
+    fails(R"({ "curve": "A", "twists": true })", "twists");
+}
+
 TEST(Smoothness, WrongKeysAreRefused) {
     const TemporaryFolder t;
     const auto fails = [&](const std::string& object, const std::string& message) {

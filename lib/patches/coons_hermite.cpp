@@ -4,7 +4,8 @@
 
 namespace isoparm {
 
-Patch make_coons_hermite(const HermiteData& data, Twist twist, Part part) {
+namespace {
+HermiteNetwork network_of(const HermiteData& data) {
     // A Hermite basis of one cell has the order value, derivative, value, derivative.
     static constexpr std::size_t order[4] = {0, 1, 3, 2};
     HermiteNetwork network;
@@ -13,7 +14,14 @@ Patch make_coons_hermite(const HermiteData& data, Twist twist, Part part) {
         network.g.push_back(reparametrized(data.g[k], 0, 1));
     }
     network.name = [](char family, std::size_t k) { return std::string(1, family) + "[" + std::to_string(order[k]) + "]"; };
-    return make_patch(hermite_surface(network, twist, true, part));
+    return network;
+}
+}  // namespace
+
+Patch make_coons_hermite(const HermiteData& data, Twist twist, Part part) { return make_patch(hermite_surface(network_of(data), twist, true, part)); }
+
+Patch gregory_on_edges(const HermiteData& data, bool of_f, double& slack) {
+    return make_patch(on_edges(hermite_surface(network_of(data), Twist::gregory, true, Part::sum), of_f, &slack));
 }
 
 }  // namespace isoparm

@@ -17,4 +17,6 @@ struct HermiteData {
 };
 /// Throws IncompatibleError for positions and tangents that disagree, and for twists when `twist` is compatible.
 Patch make_coons_hermite(const HermiteData& data, Twist twist = Twist::compatible, Part part = Part::sum);
+/// The same with Gregory's twist, near its edges u = 0, 1 (`of_f`) or v = 0, 1: on_edges() of hermite_surface.h.
+Patch gregory_on_edges(const HermiteData& data, bool of_f, double& slack);
 }

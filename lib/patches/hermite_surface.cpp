@@ -39,4 +39,18 @@ HermiteSurface hermite_surface(const HermiteNetwork& network, Twist twist, bool 
     return {{HermiteBasis(m), HermiteBasis(n), f, g, std::move(corner), part, {0, double(m), 0, double(n)}}, std::move(jump)};
 }
 
+HermiteSurface on_edges(HermiteSurface s, bool of_f, double* slack) {
+    if (slack) *slack = 0;
+    for (std::size_t i = 0; i < s.jump.size() && !of_f; ++i)
+        for (std::size_t j = 0; j < s.jump[i].size(); ++j) {
+            Point& twist = s.sum.corner[2 * i + 1][2 * j + 1];
+            const Point sum = twist + s.jump[i][j];
+            // Half a unit in the last place of each of the three numbers; Hermite polynomials of slopes are below 1.
+            if (slack) *slack += 0x1p-52 * (length(sum) + 0x1p-1000);
+            twist = sum;
+        }
+    s.jump.clear();
+    return s;
+}
+
 }  // namespace isoparm

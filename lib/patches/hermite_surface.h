@@ -50,6 +50,11 @@ struct HermiteNetwork {
     std::vector<Curve> g;                                         // g_2j = x(.,j), g_2j+1 = x_v(.,j), j = 0..n
     std::function<std::string(char family, std::size_t k)> name;  // of f_k and g_k, for messages
 };
+/// Gregory's surface near its edges: a surface without rational terms that has the same positions and first derivatives on them. With p and q zero on the two
+/// edges at a corner, its term p^2 q / (p + q) is p^2 + ... along p = 0 and p q + ... along q = 0, up to terms of second order in what is zero there; terms of other corners
+/// have double zeros on the edge. So along the lines u = const the twists of the g_j do for it (`of_f`), along v = const those of the f_i. The corners are rounded: `slack`, if asked for,
+/// becomes what first derivatives may be off by that.
+HermiteSurface on_edges(HermiteSurface gregory, bool of_f, double* slack = nullptr);
 /// Throws IncompatibleError where positions differ, tangents when `tangents_agree` is asked for (else the cross derivatives give
 /// the corner data), and twists when they must be compatible.
 HermiteSurface hermite_surface(const HermiteNetwork& network, Twist twist, bool tangents_agree, Part part);

@@ -7,6 +7,7 @@
 #include "commands/limit_scene.h"
 #include "commands/options.h"
 #include "commands/output.h"
+#include "commands/render_options.h"
 #include "error.h"
 #include "io/atomic_file.h"
 #include "io/cage_obj.h"
@@ -15,7 +16,7 @@
 namespace isoparm {
 namespace {
 
-constexpr const char* kHelp = R"(usage: isoparm limit CAGE.obj [--scheme S] [--json] [-o DIR] [--samples N] [--levels K]
+constexpr const char* kHelp = R"(usage: isoparm limit CAGE.obj [--scheme S] [--json] [-o DIR] [--image WxH] [--samples N] [--levels K]
        isoparm limit --scene SCENE --surface S [--json] [-o DIR]
 
 Builds composite Coons surfaces on the limit surface of a subdivision cage and measures how far they are from it.
@@ -35,7 +36,7 @@ divided by this one, so 4, 8 or 16); extraordinary vertices as above. "max_devia
 With --scene: each patch of a surface on rectangles against the limit of a cage: the control points of the uniform bicubic
 B-spline through ever more of its points; the deviation must fall 16 times a halving where the patch is smooth ("ratio":
 the one before divided by this one). -o DIR writes DIR/limit.json and the last cages, DIR/cage-0.obj ..., of patches that
-could be compared. --scheme, --samples and --levels are for cages.
+could be compared. --scheme, --samples, --levels and --image are for cages.
 
 CAGE.obj       v and f lines, and OpenSubdiv's tags (indices from 0): t crease 2/1/0 V0 V1 SHARPNESS,
                t corner 1/1/0 V SHARPNESS, t hole 1/0/0 FACE, t interpolateboundary 1/0/0 N
@@ -45,6 +46,10 @@ CAGE.obj       v and f lines, and OpenSubdiv's tags (indices from 0): t crease 2
 -o DIR         the report as DIR/limit.json as well, and DIR/limit.png: the surface coloured by how far the composite of
                one patch a face is from it, where the cage has irregular faces that could be compared. Nothing else in
                DIR is touched: files of other runs stay
+--image WxH    the image-space form too: the limit surface and the composite of one patch a face, traced with one camera
+               in pictures of that size (16 to 4096 pixels each way), and how far colours, normals and silhouettes differ
+               ("image" of the report, otherwise null); with -o also DIR/view-limit.png, view-composite.png and
+               view-difference.png
 --samples N    samples each way over a face and along an edge, 2 to 1025 (default 17); over a cell at a vertex
                65 at most (default 9)
 --levels K     the last level around extraordinary vertices, 0 to 12 (default 6)
@@ -59,6 +64,13 @@ exit codes     0 what must be equal is
 void write_report(const std::string& folder, const LimitResult& result) {
     write_atomically((std::filesystem::path(folder) / "limit.json").string(), [&](std::ostream& out) { out << limit_json(result); });
     write_limit_picture((std::filesystem::path(folder) / "limit.png").string(), result);
+    if (result.view) write_limit_view(folder, *result.view);
+}
+
+/// The image-space form; nothing where there is no exact limit surface to draw, or no size to see.
+std::optional<LimitView> view_of(const LimitSurface& limit, const LimitReport& regular, const LimitLevels& irregular, const std::array<int, 2>& size) {
+    if (!irregular.refused.empty() || regular.hidden_by_rounding()) return {};
+    return view_limit(limit, irregular.faces ? *irregular.faces : LimitFaces(limit.cage(), limit.scheme()), size[0], size[1]);
 }
 
 LimitResult measure(const std::string& path, Scheme scheme, const Options& options) {
@@ -66,6 +78,7 @@ LimitResult measure(const std::string& path, Scheme scheme, const Options& optio
     LevelOptions levels;
     if (const auto samples = options.integer("--samples", 2, 1025)) how.samples = *samples, levels.samples = std::min(*samples, 65);
     if (const auto last = options.integer("--levels", 0, 12)) levels.levels = *last;
+    const auto size = read_size(options, "--image", 16, 4096);
     const Cage cage = read_cage_obj(read_text_file(path), path);
     try {
         const LimitSurface limit(cage, scheme);
@@ -75,20 +88,26 @@ LimitResult measure(const std::string& path, Scheme scheme, const Options& optio
         for (const UncomparedFace& f : regular.not_compared)
             if (!irregular.compared[f.face]) (irregular.subcells.compared[f.face] ? subcells_only : nowhere).push_back(f);
         regular.not_compared = std::move(nowhere);
-        return {path, cage, std::move(regular), std::move(irregular), std::move(subcells_only)};
+        std::optional<LimitView> view;
+        if (size) view = view_of(limit, regular, irregular, *size);
+        return {path, cage, std::move(regular), std::move(irregular), std::move(subcells_only), std::move(view)};
     } catch (const Error& e) {
         throw Error(e.kind(), path + ": " + e.what());
     }
 }
 
 int run(const std::vector<std::string>& arguments) {
-    const Options options("limit", arguments, {{"--scheme", true}, {"--json", false}, {"-o", true}, {"--samples", true}, {"--levels", true}, {"--scene", true}, {"--surface", true}});
+    const Options options("limit", arguments, {{"--scheme", true}, {"--json", false}, {"-o", true}, {"--samples", true}, {"--levels", true}, {"--scene", true}, {"--surface", true}, {"--image", true}});
     if (options.has("--scene")) return run_limit_scene(options);
     if (options.has("--surface")) options.fail("found --surface without --scene, expected the scene that has the surface");
     if (options.words().size() != 1) options.fail("found " + std::to_string(options.words().size()) + " file names, expected one cage, CAGE.obj");
     const std::string word = options.word("--scheme", limit_schemes());
     const auto scheme = static_cast<Scheme>(std::find(limit_schemes().begin(), limit_schemes().end(), word) - limit_schemes().begin());
-    if (const auto folder = options.value("-o")) check_outputs_in(options, *folder, {"limit.json", "limit.png"}, {{"CAGE.obj", options.words().front()}});
+    if (const auto folder = options.value("-o")) {
+        std::vector<std::string> names{"limit.json", "limit.png"};
+        if (options.has("--image")) names.insert(names.end(), limit_view_files().begin(), limit_view_files().end());
+        check_outputs_in(options, *folder, names, {{"CAGE.obj", options.words().front()}});
+    }
     const LimitResult result = measure(options.words().front(), scheme, options);
     if (const auto folder = options.value("-o")) write_report(*folder, result);
     if (options.has("--json")) std::cout << limit_json(result);

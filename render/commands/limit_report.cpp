@@ -143,6 +143,19 @@ void print_faces(const char* title, const Cage& cage, const std::vector<Uncompar
         out << (faces.size() > 6 ? ", ...\n" : "\n");
     }
 }
+void print_view(const LimitView& v, std::ostream& out) {
+    out << "\nPictures, one camera, " << v.width << "x" << v.height << " pixels: " << v.patches << " patches of the limit surface against the composite of one patch a face";
+    if (v.left_out) out << ", " << v.left_out << " without one left out";
+    out << "\n  colours          at most " << brief(v.color_max) << ", RMS " << brief(v.color_rms) << " (linear light, 0 to 1)\n"
+        << "  normals          at most " << brief(v.normal_max_degrees) << ", on average " << brief(v.normal_mean_degrees) << " degrees, over the " << v.both << " pixels of both\n"
+        << "  silhouettes      " << v.silhouette_differing << (v.silhouette_differing == 1 ? " pixel differs" : " pixels differ") << ", by at most " << brief(v.silhouette_distance) << " pixels\n";
+}
+std::string json(const LimitView& v) {
+    return "{\"width\": " + std::to_string(v.width) + ", \"height\": " + std::to_string(v.height) + ", \"patches\": " + std::to_string(v.patches) + ", \"left_out\": " + std::to_string(v.left_out) +
+           ", \"color\": {\"max\": " + json_text(v.color_max) + ", \"rms\": " + json_text(v.color_rms) + "}, \"normals\": {\"pixels\": " + std::to_string(v.both) + ", \"max_degrees\": " +
+           json_text(v.normal_max_degrees) + ", \"mean_degrees\": " + json_text(v.normal_mean_degrees) + "}, \"silhouette\": {\"differing\": " + std::to_string(v.silhouette_differing) +
+           ", \"distance\": " + json_text(v.silhouette_distance) + "}}";
+}
 std::string json(const UncomparedFace& f) { return "{\"face\": " + std::to_string(f.face) + ", \"reason\": " + json_text(f.reason) + "}"; }
 
 }  // namespace
@@ -188,7 +201,7 @@ std::string limit_json(const LimitResult& result) {
         << json_list(i.loop, [](const LoopLevel& row) { return json(row); }) << ",\n \"loop_edges\": " << json_text(i.loop_edges) << ",\n \"refused\": "
         << (i.refused.empty() ? "null" : json_text(i.refused)) << ",\n \"subcells_only\": " << json_list(result.subcells_only, [](const UncomparedFace& f) { return json(f); })
         << ",\n \"not_compared\": " << json_list(r.not_compared, [](const UncomparedFace& f) { return json(f); })
-        << "}\n";
+        << ",\n \"image\": " << (result.view ? json(*result.view) : "null") << "}\n";
     return out.str();
 }
 
@@ -201,6 +214,7 @@ void print_limit(const LimitResult& result, std::ostream& out) {
     print_subcells(result, out);
     print_levels(result.irregular, out);
     print_loop(result, out);
+    if (result.view) print_view(*result.view, out);
     if (!result.irregular.refused.empty()) out << "\nIrregular faces are not compared: " << result.irregular.refused << "\n";
     print_faces("Compared on sub-cells only", result.cage, result.subcells_only, out);
     print_faces("Not compared", result.cage, r.not_compared, out);

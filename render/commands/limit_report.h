@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/limit_view.h"
 #include "limit_compare.h"
 #include "limit_levels.h"
 
@@ -19,6 +20,7 @@ struct LimitResult {
     LimitReport regular;  // not_compared: also not as an irregular face
     LimitLevels irregular;
     std::vector<UncomparedFace> subcells_only;  // faces whose extraordinary vertices, if any, have no tangents
+    std::optional<LimitView> view;              // the image-space form, where it was asked for and there is something to draw
 
     /// Is everything equal that must be? Nothing where there is no such thing, or rounding hides it.
     std::optional<bool> identity() const;

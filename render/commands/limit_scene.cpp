@@ -74,7 +74,7 @@ void write_files(const std::string& folder, const std::string& text, const Repor
 
 int run_limit_scene(const Options& options) {
     if (!options.words().empty()) options.fail("found " + options.words().front() + " beside --scene, expected a cage or a scene, not both");
-    for (const char* flag : {"--scheme", "--samples", "--levels"})
+    for (const char* flag : {"--scheme", "--samples", "--levels", "--image"})
         if (options.has(flag)) options.fail("found " + std::string(flag) + " beside --scene, expected it with a cage only; leave it out");
     const std::string path = *options.value("--scene"), name = options.required("--surface", "name the surface of the scene to compare");
     const Scene scene = options.scene_at(path);

@@ -88,14 +88,18 @@ void write_picture(const Options& options, const std::string& path, const Scene&
     write_paper(path, {picture.image, picture.drawn, how.pixels_per_point, scene.title, options.word("--text", {"fonts", "outlines"}) == "outlines"}, metadata);
 }
 
+std::optional<std::array<int, 2>> read_size(const Options& options, const std::string& name, int least, int most) {
+    const auto size = options.value(name);
+    if (!size) return {};
+    const auto n = whole_numbers(*size, 'x', 2);
+    if (n.empty() || std::min(n[0], n[1]) < least || std::max(n[0], n[1]) > most)
+        options.fail(name + ": found " + quoted(*size) + ", expected WIDTHxHEIGHT, each from " + std::to_string(least) + " to " + std::to_string(most));
+    return std::array<int, 2>{n[0], n[1]};
+}
+
 RenderOptions read_render_options(const Options& options) {
     RenderOptions how;
-    if (const auto size = options.value("--size")) {
-        const auto n = whole_numbers(*size, 'x', 2);
-        if (n.empty() || n[0] < 1 || n[1] < 1 || n[0] > 32768 || n[1] > 32768) options.fail("--size: found " + quoted(*size) + ", expected WIDTHxHEIGHT, each from 1 to 32768");
-        how.width = n[0];
-        how.height = n[1];
-    }
+    if (const auto size = read_size(options, "--size", 1, 32768)) how.width = (*size)[0], how.height = (*size)[1];
     read_page(options, how);
     if (const auto samples = options.integer("--samples", 1, 65536)) how.samples = *samples;
     how.tolerance = options.tolerance();
