@@ -6,12 +6,6 @@
 #include "scalar/safe.h"
 
 namespace isoparm {
-namespace {
-
-/// The largest value of s (1 - s) |2 s - 1| on [0,1], sqrt(3)/18, rounded up.
-constexpr double kOdd = 0.0963;
-
-}  // namespace
 
 double largest_form(const std::array<double, 3>& b, const std::array<double, 3>& q) {
     return std::max(simplex_maximum(q[0] + b[0], q[1] + b[1], q[2] + b[2]), simplex_maximum(q[0] - b[0], q[1] - b[1], q[2] - b[2]));

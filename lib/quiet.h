@@ -8,6 +8,11 @@
 
 namespace isoparm {
 
+/// Times the sum of the absolute terms: at least the rounding error of H(m)[e,e] and of its products with unit vectors.
+inline constexpr double kRounding = 64 * 0x1p-53;
+/// The largest value of s (1 - s) |2 s - 1| on [0,1], sqrt(3)/18, rounded up.
+inline constexpr double kOdd = 0.0963;
+
 /// The edge after edge k, and the corner after corner k.
 inline constexpr std::array<int, 3> kNext{1, 2, 0};
 

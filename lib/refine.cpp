@@ -13,10 +13,10 @@ namespace isoparm {
 namespace {
 
 /// Runs f(member, index) over all items of all patches, in parallel; `count(member)` items each.
-template <class Count, class F> void for_all(std::size_t members, Count count, F f) {
+template <class Count, class F> void for_all(std::size_t members, Count count, F f, std::size_t grain = 64) {
     std::vector<std::size_t> start(members + 1, 0);
     for (std::size_t m = 0; m < members; ++m) start[m + 1] = start[m] + count(m);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, start.back(), 64), [&](const tbb::blocked_range<std::size_t>& range) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, start.back(), grain), [&](const tbb::blocked_range<std::size_t>& range) {
         std::size_t m = std::upper_bound(start.begin(), start.end(), range.begin()) - start.begin() - 1;
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             while (i >= start[m + 1]) ++m;
@@ -25,6 +25,8 @@ template <class Count, class F> void for_all(std::size_t members, Count count, F
     });
 }
 
+/// Triangles that are bounded in one go.
+constexpr std::size_t kTogether = 64;
 /// Slack below this part of the tolerance need not be sharp.
 constexpr double kFew = 1e-8;
 
@@ -77,17 +79,40 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
     });
 }
 
-void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide) const {
+CornerData Refinement::corners_of(const PatchMesh& mesh, const PatchTriangle& t) const {
     CornerData data;
     for (int k = 0; k < 3; ++k) data.uv[k] = mesh.uv[t.corner[k]], data.points[k] = positions_[mesh.vertex[t.corner[k]]];
     data.slack = mesh.slack_of(t);
+    return data;
+}
+
+void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide) const {
+    const CornerData data = corners_of(mesh, t);
     t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_, turn_, decide);
 }
 
+/// Those of one polynomial cell after the other go together.
+void Refinement::bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const {
+    std::array<CornerData, kTogether> data;
+    std::array<TriangleBound, kTogether> bounds;
+    const auto triangle = [&](std::size_t i) -> PatchTriangle& { return mesh.triangles[mesh.fresh[i]]; };
+    while (first < last) {
+        const BoundCell* cell = triangle(first).cell;
+        if (!cell->polynomial().exists()) {
+            bound(mesh, member, triangle(first++));
+            continue;
+        }
+        std::size_t n = 0;
+        while (first + n < last && triangle(first + n).cell == cell) data[n] = corners_of(mesh, triangle(first + n)), ++n;
+        cell->bound_all(surface_[member].patch, {data.data(), n}, tolerance_, measure_, turn_, false, bounds.data());
+        for (std::size_t i = 0; i < n; ++i) triangle(first++).proof = bounds[i];
+    }
+}
+
 bool Refinement::bound_and_mark() {
-    for_all(patches_.size(), [&](std::size_t m) { return patches_[m].fresh.size(); }, [&](std::size_t m, std::size_t i) {
-        bound(patches_[m], std::uint32_t(m), patches_[m].triangles[patches_[m].fresh[i]]);
-    });
+    for_all(patches_.size(), [&](std::size_t m) { return (patches_[m].fresh.size() + kTogether - 1) / kTogether; }, [&](std::size_t m, std::size_t i) {
+        bound_fresh(patches_[m], std::uint32_t(m), i * kTogether, std::min((i + 1) * kTogether, patches_[m].fresh.size()));
+    }, 1);
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
         PatchMesh& mesh = patches_[m];
         for (const auto i : mesh.fresh) {

@@ -142,8 +142,13 @@ private:
     void place_vertices(std::uint32_t member, std::size_t first_corner, std::uint32_t first_vertex);
     void measure_slack(std::uint32_t member, std::size_t first);
     void collect_slack(const std::vector<std::size_t>& first);
+    CornerData corners_of(const PatchMesh& mesh, const PatchTriangle& t) const;
     void bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
-    bool flip(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, int edge, bool with_neighbours) const;
+    void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
+    bool keeps(const PatchMesh& mesh, const PatchTriangle& t) const;
+    struct Flip;
+    Flip flip_of(const PatchMesh& mesh, std::uint32_t triangle, int edge) const;
+    bool flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) const;
     bool flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, bool with_neighbours) const;
     void mark(PatchMesh& mesh, std::uint32_t edge);
 

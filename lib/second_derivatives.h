@@ -29,6 +29,14 @@ struct SecondDerivatives {
     void add_sizes(double ru, double rv);
 };
 
+/// What a PolynomialCell knows, for loops over lanes.
+struct PolynomialForm {
+    int p, q;                        // degrees
+    double u, v;                     // the cell's middle
+    const std::array<double, 4>* c;  // x, y, z of the coefficient of (u' - u)^i (v' - v)^j at i (q + 1) + j, and nothing
+    const double* error;             // at least the length of what those about any point of the cell are off by in plain doubles
+};
+
 /// A cell of a patch where the surface is polynomial: its Taylor coefficients about the cell's middle in plain doubles, and bounds of
 /// what rounding does to those about any other point. Makes SecondDerivatives tens of times faster than intervals do. docs/certificates.md
 /// has the proof. Immutable, thread-safe.
@@ -45,6 +53,8 @@ public:
     SecondDerivatives operator()(const Box& box, int parts) const;
     /// At least the distance of x from the surface at p, a point of the cell.
     double slack(const Vec2& p, const Point& x) const;
+    /// Valid as long as the cell.
+    PolynomialForm form() const { return {p_, q_, u_, v_, c_.data(), error_.data()}; }
 
 private:
     using Lanes = std::array<double, 4>;  // x, y, z of a coefficient, and nothing

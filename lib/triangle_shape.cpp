@@ -9,9 +9,6 @@
 namespace isoparm {
 namespace {
 
-/// Times the sum of the absolute terms: at least the rounding error of H(m)[e,e] and of its products with unit vectors.
-constexpr double kRounding = 64 * 0x1p-53;
-
 /// Right-handed orthonormal frame (up to 1e-15) whose first vector is n, or the axes where n is no unit vector.
 std::array<Point, 3> frame_of(const Point& n) {
     if (!(std::fabs(dot(n, n) - 1) < 4e-15)) return {Point{0, 0, 1}, Point{1, 0, 0}, Point{0, 1, 0}};
