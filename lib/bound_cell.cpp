@@ -136,16 +136,15 @@ template <class Use> void in_lanes(const PolynomialCell& cell, std::span<const C
 }  // namespace
 
 /// Bounds that are above the tolerance, in the order of bound(): third derivatives over pieces where that may help, first derivatives in the end.
-void BoundCell::sharpen(const Patch& patch, std::span<const CornerData> triangles, std::span<const int> which, double tolerance, const LanesAsked& asked, bool decide,
+void BoundCell::sharpen(const Patch& patch, std::span<const CornerData> triangles, std::span<const int> which, double tolerance, const LanesAsked& asked,
                         TriangleBound* bounds) const {
     std::vector<int> near, rough;
     const auto room = [&](int k) { return tolerance - triangles[std::size_t(k)].slack; };
     const auto own = [&](int k) { return bounds[k].own(asked.measure); };
-    const auto hopeless = [&](int k, double least) { return least > (decide ? room(k) : (1 - kClear) * own(k)); };
     LanesAsked least = asked, pieces = asked;
     least.least = true, least.turns = false, pieces.parts = SecondDerivatives::pieces;
     in_lanes(*exact_, triangles, which, least, [&](int k, const TriangleBound& b) {
-        if (!hopeless(k, b.own(asked.measure)) && own(k) <= kNear * room(k)) near.push_back(k);
+        if (!(b.own(asked.measure) > (1 - kClear) * own(k)) && own(k) <= kNear * room(k)) near.push_back(k);
     });
     in_lanes(*exact_, triangles, near, pieces, [&](int k, const TriangleBound& b) {
         if (b.own(asked.measure) < own(k)) bounds[k] = b;
@@ -167,19 +166,7 @@ void BoundCell::bound_all(const Patch& patch, std::span<const CornerData> triang
         bounds[k] = b;
         if (!(b.own(measure) <= tolerance - triangles[std::size_t(k)].slack)) above.push_back(k);
     });
-    if (!quick && !above.empty()) sharpen(patch, triangles, above, tolerance, asked, false, bounds);
-}
-
-bool BoundCell::pass(const Patch& patch, std::span<const CornerData> triangles, double tolerance, Measure measure, double turn, TriangleBound* bounds) const {
-    const LanesAsked asked{measure, 1, false, turn != TriangleBound::unasked};
-    std::vector<int> above;
-    for (int k = 0; k < int(triangles.size()); ++k) {
-        const double own = bounds[k].own(measure), room = tolerance - triangles[std::size_t(k)].slack;
-        if (!(own <= kNear * room)) return false;
-        if (!(own <= room)) above.push_back(k);
-    }
-    if (!above.empty()) sharpen(patch, triangles, above, tolerance, asked, true, bounds);
-    return std::all_of(above.begin(), above.end(), [&](int k) { return bounds[k].own(measure) <= tolerance - triangles[std::size_t(k)].slack; });
+    if (!quick && !above.empty()) sharpen(patch, triangles, above, tolerance, asked, bounds);
 }
 
 }  // namespace isoparm

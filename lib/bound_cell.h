@@ -34,8 +34,6 @@ public:
     /// Bounds triangles of this cell, which is one between breaks with polynomial().exists(), each by its own box and so as sharply as the above can: eight
     /// at once. `tolerance` is that of the mesh, the slack of the triangles included; `bounds` has their number. `quick`: less sharply. Thread-safe.
     void bound_all(const Patch& patch, std::span<const CornerData> triangles, double tolerance, Measure measure, double turn, bool quick, TriangleBound* bounds) const;
-    /// Are all of these below the tolerance, whose quick bounds are known? They are made sharp where that decides.
-    bool pass(const Patch& patch, std::span<const CornerData> triangles, double tolerance, Measure measure, double turn, TriangleBound* bounds) const;
     /// A cell of the tree below this one that is not much wider than the triangle.
     const BoundCell* around(const Patch& patch, const Box& box) const;
 
@@ -45,7 +43,7 @@ public:
 private:
     BoundCell(const Patch& patch, const Box& box, const Box& reach, std::shared_ptr<const PolynomialCell> exact);
     const BoundCell* child(const Patch& patch, const Box& of) const;
-    void sharpen(const Patch& patch, std::span<const CornerData> triangles, std::span<const int> which, double tolerance, const LanesAsked& asked, bool decide, TriangleBound* bounds) const;
+    void sharpen(const Patch& patch, std::span<const CornerData> triangles, std::span<const int> which, double tolerance, const LanesAsked& asked, TriangleBound* bounds) const;
     /// Of a box in the cell.
     SecondDerivatives model_of(const Patch& patch, const Box& box, int parts = 1) const;
 

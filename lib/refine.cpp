@@ -52,6 +52,7 @@ void Refinement::replace(std::vector<PatchMesh> patches, std::vector<RimNode> ri
     for (std::size_t m = 0; m < patches_.size(); ++m) {
         patches[m].cells = std::move(patches_[m].cells);
         patches_[m] = std::move(patches[m]);
+        patches_[m].settled.assign(patches_[m].triangles.size(), kUnsettled);
         measure_slack(std::uint32_t(m), 0);
     }
     worst_slack_ = 0;
@@ -178,39 +179,41 @@ double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const
 double Refinement::worst_bound_of(std::size_t member) const {
     const PatchMesh& mesh = patches_[member];
     return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 1024), 0.0, [&](const auto& range, double worst) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) worst = std::max(worst, bound_of(mesh, std::uint32_t(i)));
+        for (std::size_t i = range.begin(); i < range.end(); ++i) worst = std::max(worst, mesh.settled[i] != kUnsettled ? mesh.settled[i] : bound_of(mesh, std::uint32_t(i)));
         return worst;
     }, [](double a, double b) { return std::max(a, b); });
 }
 
 bool Refinement::mark_with_neighbours() {
     if (measure_ == Measure::parametric) return false;
-    std::vector<std::vector<char>> fails(patches_.size());
-    for (std::size_t m = 0; m < patches_.size(); ++m) fails[m].assign(patches_[m].triangles.size(), 0);
-    for_all(patches_.size(), [&](std::size_t m) { return fails[m].size(); }, [&](std::size_t m, std::size_t i) {
-        PatchTriangle& t = patches_[m].triangles[i];
-        t.settled = t.settled || bound_of(patches_[m], std::uint32_t(i)) <= tolerance_;
-        fails[m][i] = !t.settled;
+    std::vector<std::vector<std::uint32_t>> open(patches_.size());
+    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
+        for (std::uint32_t i = 0; i < patches_[m].settled.size(); ++i)
+            if (patches_[m].settled[i] == kUnsettled) open[m].push_back(i);
+    });
+    for_all(patches_.size(), [&](std::size_t m) { return open[m].size(); }, [&](std::size_t m, std::size_t i) {
+        const double bound = bound_of(patches_[m], open[m][i]);
+        if (bound <= tolerance_) patches_[m].settled[open[m][i]] = bound;
     });
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
         PatchMesh& mesh = patches_[m];
-        for (std::uint32_t i = 0; i < fails[m].size(); ++i)
-            if (fails[m][i]) fails[m][i] = !(bound_of(mesh, i) <= tolerance_) && !flip_any(mesh, std::uint32_t(m), i, true);
+        // Turning one edge may have mended the next triangle.
+        const auto mended = [&](std::uint32_t i) { return mesh.settled[i] != kUnsettled || bound_of(mesh, i) <= tolerance_ || flip_any(mesh, std::uint32_t(m), i, true); };
+        open[m].erase(std::remove_if(open[m].begin(), open[m].end(), mended), open[m].end());
     });
     bool any = false;
     for (std::size_t m = 0; m < patches_.size(); ++m)
-        for (std::size_t i = 0; i < fails[m].size(); ++i)
-            if (fails[m][i]) {
-                PatchMesh& mesh = patches_[m];
-                const PatchTriangle* worst = &mesh.triangles[i];
-                // Mostly it is a neighbour that is near the tolerance by itself: the one with the largest bound is split.
-                if (worst->proof.quiet)
-                    for (const auto e : mesh.triangles[i].edge)
-                        for (const auto other : mesh.edges[e].side)
-                            if (other != kNone && mesh.triangles[other].proof.quiet && mesh.triangles[other].proof.normal > worst->proof.normal) worst = &mesh.triangles[other];
-                mark(mesh, worst->edge[worst->proof.quiet ? worst->proof.worst_edge : worst->proof.worst_across]);
-                any = true;
-            }
+        for (const auto i : open[m]) {
+            PatchMesh& mesh = patches_[m];
+            const PatchTriangle* worst = &mesh.triangles[i];
+            // Mostly it is a neighbour that is near the tolerance by itself: the one with the largest bound is split.
+            if (worst->proof.quiet)
+                for (const auto e : mesh.triangles[i].edge)
+                    for (const auto other : mesh.edges[e].side)
+                        if (other != kNone && mesh.triangles[other].proof.quiet && mesh.triangles[other].proof.normal > worst->proof.normal) worst = &mesh.triangles[other];
+            mark(mesh, worst->edge[worst->proof.quiet ? worst->proof.worst_edge : worst->proof.worst_across]);
+            any = true;
+        }
     return any;
 }
 
@@ -249,11 +252,28 @@ bool Refinement::mark_coincident_edges() {
     return any;
 }
 
+/// Is there a triangle left out that not all of its long sides' neighbours keep? Two of its corners are one vertex, on rims then.
+bool Refinement::may_lose(const PatchMesh& mesh) const {
+    std::vector<std::uint32_t> shared;
+    for (const auto v : mesh.vertex)
+        if (shared_[v]) shared.push_back(v);
+    std::sort(shared.begin(), shared.end());
+    if (std::adjacent_find(shared.begin(), shared.end()) == shared.end()) return false;
+    return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const PatchTriangle& t) {
+        if (!mesh.left_out(t)) return false;
+        int sides = 0, kept = 0;
+        for (const auto e : t.edge) {
+            if (mesh.vertex[mesh.edges[e].a] == mesh.vertex[mesh.edges[e].b]) continue;  // a point, kept with the sides
+            ++sides;
+            const auto& beside = mesh.edges[e].side;
+            kept += std::any_of(beside.begin(), beside.end(), [&](std::uint32_t o) { return o != kNone && !mesh.left_out(mesh.triangles[o]); });
+        }
+        return sides == 0 || kept < sides;
+    });
+}
+
 bool Refinement::mark_lost_edges() {
-    const auto any_left_out = [](const PatchMesh& mesh) {
-        return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const PatchTriangle& t) { return mesh.left_out(t); });
-    };
-    if (std::none_of(patches_.begin(), patches_.end(), any_left_out)) return false;
+    if (std::none_of(patches_.begin(), patches_.end(), [&](const PatchMesh& mesh) { return may_lose(mesh); })) return false;
     // A segment that is left out joins two vertices that it shares with other triangles, or is the whole of a patch.
     std::unordered_set<std::uint64_t> kept;
     std::vector<char> named(positions_.size(), 0);

@@ -81,14 +81,13 @@ bool Refinement::flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) cons
         put(before[0], before[1], ends[0], ends[1]);
         return false;
     }
-    any_beside([&](std::uint32_t n) { return mesh.triangles[n].settled = false; });
+    any_beside([&](std::uint32_t n) { return mesh.settled[n] = kUnsettled, false; });
     return true;
 }
 
 /// The worst edge first. In polynomial cells all that can be turned are bounded together.
 bool Refinement::flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t i, bool with_neighbours) const {
     const int worst = mesh.triangles[i].proof.worst_edge;
-    const Patch& patch = surface_[member].patch;
     std::array<Flip, 3> flips;
     std::array<CornerData, 6> data;
     std::array<TriangleBound, 6> bounds;
@@ -99,11 +98,10 @@ bool Refinement::flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t i
     const BoundCell* cell = flips[0].left.cell;
     const bool together = cell->polynomial().exists();
     for (std::size_t k = 0; k < n && together; ++k) data[2 * k] = corners_of(mesh, flips[k].left), data[2 * k + 1] = corners_of(mesh, flips[k].right);
-    if (together) cell->bound_all(patch, {data.data(), 2 * n}, tolerance_, measure_, turn_, true, bounds.data());
+    if (together) cell->bound_all(surface_[member].patch, {data.data(), 2 * n}, tolerance_, measure_, turn_, true, bounds.data());
     for (std::size_t k = 0; k < n; ++k) {
         Flip& f = flips[k];
         if (together) {
-            if (!cell->pass(patch, {&data[2 * k], 2}, tolerance_, measure_, turn_, &bounds[2 * k])) continue;
             f.left.proof = bounds[2 * k], f.right.proof = bounds[2 * k + 1];
         } else {
             bound(mesh, member, f.left, true);

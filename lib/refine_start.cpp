@@ -135,6 +135,7 @@ public:
         for (const auto e : t.edge) mesh_.edges[e].side[mesh_.edges[e].side[0] != kNone] = index;
         mesh_.fresh.push_back(index);
         mesh_.triangles.push_back(t);
+        mesh_.settled.push_back(kUnsettled);
     }
     /// Turns all triangles over: for chains in exchanged parameters.
     void mirror(bool mirrored) { mirrored_ = mirrored; }
