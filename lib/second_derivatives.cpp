@@ -73,7 +73,7 @@ SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box, int par
 
 void SecondDerivatives::add_sizes(double ru, double rv) {
     for (int k = 0; k < 4; ++k) t_size[k] = safe(size_of(t[k]) + t_rad[k]);
-    for (int k = 0; k < 3; ++k) h_size[k] = safe(size_of(h[k]) + t_size[k] * ru + t_size[k + 1] * rv);
+    for (int k = 0; k < 3; ++k) h_size[k] = safe(std::fabs(h[k].x) + std::fabs(h[k].y) + std::fabs(h[k].z) + t_size[k] * ru + t_size[k + 1] * rv);
     const double all = h_size[0] + h_size[1] + h_size[2] + t_size[0] + t_size[1] + t_size[2] + t_size[3] + h_rad[0] + h_rad[1] + h_rad[2];
     bounded = all < kLargestDerivative && in_scale(ru) && in_scale(rv);
 }

@@ -16,7 +16,7 @@ struct SecondDerivatives {
     std::array<Point, 4> t{};              // S_uuu, S_uuv, S_uvv, S_vvv: middles of their ranges
     std::array<double, 4> t_rad{};         // at least the length of what they may be off by, anywhere in the cell
     std::array<double, 4> t_size{};        // at least their length
-    std::array<double, 3> h_size{};        // at least |h| + |t| times the half-widths: what rounding is relative to
+    std::array<double, 3> h_size{};        // at least |h| + |t| times the half-widths, |h| by its coordinates: what rounding is relative to
     bool bounded = false;                  // false: some of that has no bound, nothing else is set
 
     static constexpr int pieces = 3;  // along each direction, of the sharpest: more gain little

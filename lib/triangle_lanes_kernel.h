@@ -50,7 +50,7 @@ inline Real simplex_maximum(Real a, Real b, Real c) {
     const Real largest = max(max(a, b), c), edge = largest / 4.0, slack = -1e-12 * largest;
     const Mask finite = largest < infinity;
     const Mask concave = (min(min(a, b), c) > 0.0) & finite & ~((a + c - b < slack) | (a + b - c < slack) | (b + c - a < slack));
-    const Real third = up(largest / 3.0), scale = 1.0 / largest;
+    const Real third = up(largest * kThird), scale = 1.0 / largest;
     const Real p = max(a * scale, number(1e-7)), q = max(b * scale, number(1e-7)), r = max(c * scale, number(1e-7));
     const Real D = 2.0 * (p * q + q * r + r * p) - (p * p + q * q + r * r);
     const Real inner = select((scale < infinity) & (D > 3e-7), max(edge, min(third, largest * (p * q * r / D) * (1 + 2e-8))), third);
@@ -85,7 +85,7 @@ inline Mask in_scale(Real half) { return (half == 0.0) | ((half >= 1e-25) & (hal
 
 inline void add_sizes(Model& m, Real ru, Real rv) {
     for (int k = 0; k < 4; ++k) m.t_size[k] = safe(size_of(m.t[k]) + m.t_rad[k]);
-    for (int k = 0; k < 3; ++k) m.h_size[k] = safe(size_of(m.h[k]) + m.t_size[k] * ru + m.t_size[k + 1] * rv);
+    for (int k = 0; k < 3; ++k) m.h_size[k] = safe(absolute(m.h[k].x) + absolute(m.h[k].y) + absolute(m.h[k].z) + m.t_size[k] * ru + m.t_size[k + 1] * rv);
     const Real all = m.h_size[0] + m.h_size[1] + m.h_size[2] + m.t_size[0] + m.t_size[1] + m.t_size[2] + m.t_size[3] + m.h_rad[0] + m.h_rad[1] + m.h_rad[2];
     m.bounded = (all < kLargestDerivative) & in_scale(ru) & in_scale(rv);
 }
@@ -182,20 +182,20 @@ inline Real blossom(const Real* f, Flat x, Flat y, Flat z) {
 inline Cubic cubic_of(V3 n, const Real* b, const V3* t, const Flat* uv, Flat m) {
     Cubic cubic;
     const Real f[4] = {dot(n, t[0]), dot(n, t[1]), dot(n, t[2]), dot(n, t[3])};
-    const Flat g{(uv[0].x + uv[1].x + uv[2].x) / 3.0, (uv[0].y + uv[1].y + uv[2].y) / 3.0};
+    const Flat g{(uv[0].x + uv[1].x + uv[2].x) * kThird, (uv[0].y + uv[1].y + uv[2].y) * kThird};
     Flat v[3];
     Real corner[3];
     for (int c = 0; c < 3; ++c) v[c] = {uv[c].x - g.x, uv[c].y - g.y}, corner[c] = blossom(f, v[c], v[c], v[c]);
-    Real inner = 6.0 * ((corner[0] + corner[1] + corner[2]) / 3.0 - blossom(f, v[0], v[1], v[2])), odd{};
+    Real inner = 6.0 * ((corner[0] + corner[1] + corner[2]) * kThird - blossom(f, v[0], v[1], v[2])), odd{};
     for (int k = 0; k < 3; ++k) {
         const Flat x = v[k], y = v[kNext[k]], e{y.x - x.x, y.y - x.y};
-        const Real first = (2.0 * corner[k] + corner[kNext[k]]) / 3.0 - blossom(f, x, x, y), second = (corner[k] + 2.0 * corner[kNext[k]]) / 3.0 - blossom(f, x, y, y);
+        const Real first = (2.0 * corner[k] + corner[kNext[k]]) * kThird - blossom(f, x, x, y), second = (corner[k] + 2.0 * corner[kNext[k]]) * kThird - blossom(f, x, y, y);
         const Real even = 1.5 * (first + second);
-        cubic.form[k] = b[k] + blossom(f, e, e, {g.x - m.x, g.y - m.y}) + even / 3.0;
+        cubic.form[k] = b[k] + blossom(f, e, e, {g.x - m.x, g.y - m.y}) + even * kThird;
         inner -= even;
         odd += 1.5 * absolute(first - second);
     }
-    cubic.rest = (absolute(inner) / 27.0 + kOdd * odd) / 6.0;
+    cubic.rest = absolute(inner) * kInner + kOdd / 6 * odd;
     return cubic;
 }
 
@@ -275,7 +275,7 @@ struct Shape {
     const Model& s;
     bool least;
     Flat uv[3], middle;
-    Real ru, rv, aspect, uu[3], uv_[3], vv[3], noise[3], side[3], twice_area, longest, slack;
+    Real ru, rv, aspect[2], uu[3], uv_[3], vv[3], noise[3], side[3], twice_area, per_area, longest, slack;
     V3 x[3], b[3], n;
     Mask flat;
 
@@ -293,7 +293,8 @@ struct Shape {
 inline Shape::Shape(const Model& model, const TriangleLanes& in, int lane, Range box_u, Range box_v, bool ask_least) : s(model), least(ask_least) {
     middle = {mid(box_u), mid(box_v)};
     ru = max(box_u.hi - middle.x, middle.x - box_u.lo), rv = max(box_v.hi - middle.y, middle.y - box_v.lo);
-    aspect = select((ru > 0.0) & (rv > 0.0), rv / ru, number(1));
+    const Mask wide = (ru > 0.0) & (rv > 0.0);
+    aspect[0] = select(wide, rv / ru, number(1)), aspect[1] = select(wide, ru / rv, number(1));
     slack = load(in.slack + lane);
     V3 points[3];
     for (int k = 0; k < 3; ++k) {
@@ -309,15 +310,15 @@ inline Shape::Shape(const Model& model, const TriangleLanes& in, int lane, Range
         side[k] = length(x[k]);
     }
     const V3 normal = cross(x[0], x[1]);
-    twice_area = length(normal), longest = max(max(side[0], side[1]), side[2]);
+    twice_area = length(normal), per_area = 1.0 / twice_area, longest = max(max(side[0], side[1]), side[2]);
     flat = (twice_area > 1e-9 * longest * longest) & (twice_area > 1e-140);
-    n = select(flat, normal / twice_area, V3{Real{}, Real{}, Real{}});
+    n = select(flat, per_area * normal, V3{Real{}, Real{}, Real{}});
 }
 
 inline void Shape::stray(const Real* size, Real* q) const {
     const double sign = least ? -1 : 1;
     const Real suu = s.h_rad[0] * sign + size[0] * ru + size[1] * rv, suv = s.h_rad[1] * sign + size[1] * ru + size[2] * rv;
-    const Real svv = s.h_rad[2] * sign + size[2] * ru + size[3] * rv, quu = suu + suv * aspect, qvv = svv + suv / aspect;
+    const Real svv = s.h_rad[2] * sign + size[2] * ru + size[3] * rv, quu = suu + suv * aspect[0], qvv = svv + suv * aspect[1];
     for (int k = 0; k < 3; ++k) q[k] = safe(quu * uu[k] + qvv * vv[k] + noise[k]);
 }
 inline void Shape::stray_along(V3 f, Real* q) const {
@@ -364,7 +365,7 @@ inline void bound_shape(const Shape& shape, const LanesAsked& ask, Result& resul
     const V3 n = shape.n;
     const Real slack = shape.slack, longest = shape.longest;
     result.unit = n;
-    result.tilt = safe((8.1 * slack * (longest + slack) + 33 * 0x1p-53 * longest * longest) / shape.twice_area + 4 * 0x1p-53);
+    result.tilt = safe((8.1 * slack * (longest + slack) + 33 * 0x1p-53 * longest * longest) * shape.per_area + 6 * 0x1p-53);
     result.turn = none, result.worst_turn = Real{};
     if (ask.turns && !least) result.turn = turn_of(n, shape.x, shape.b, q, shape.side, slack, result.worst_turn);
     Real qn[3], bn[3], score[3], lens[3];
@@ -381,13 +382,13 @@ inline void bound_shape(const Shape& shape, const LanesAsked& ask, Result& resul
                          shape.vv[k] * (s.h_rad[2] * sign + r[2] * shape.ru + r[3] * shape.rv);
         const V3 middle = shape.b[k] + shape.third(e, {0.5 * ((from.x - m.x) + (to.x - m.x)), 0.5 * ((from.y - m.y) + (to.y - m.y))}), end = 0.5 * shape.third(e, e);
         const Real rest = max(Real{}, off) + 8.0 * shape.noise[k];
-        const V3 inward = cross(n, shape.x[k]) / shape.side[k];
+        const V3 inward = (1.0 / shape.side[k]) * cross(n, shape.x[k]);
         const Real largest = safe(length(middle) + length(end) + rest);
-        const Real along_inward = absolute(dot(inward, middle)) + absolute(dot(inward, end)) / 3.0 + rest, along_n = absolute(dot(n, middle)) + absolute(dot(n, end)) / 3.0 + rest;
+        const Real along_inward = absolute(dot(inward, middle)) + absolute(dot(inward, end)) * kThird + rest, along_n = absolute(dot(n, middle)) + absolute(dot(n, end)) * kThird + rest;
         const Real across = safe(along_inward + 2.0 * result.tilt * largest);
         lens[k] = safe(across + 0.32 * (along_n + result.tilt * largest)) * shape.side[k] / (2.0 * shape.side[k] - largest);
         quiet = quiet & (largest <= shape.side[k]) & (bend[k] <= 1.5 * longest);
-        result.across[k] = safe(across / 8.0);
+        result.across[k] = safe(0.125 * across);
     }
     for (int c = 0; c < 3; ++c) {
         const int before = kNext[kNext[c]];
@@ -405,7 +406,7 @@ inline void bound_shape(const Shape& shape, const LanesAsked& ask, Result& resul
     const Real rounding = shape.rounding() + result.tilt * result.parametric;
     result.normal = safe(min(0.5 * largest_form(bn, qn), cubic.largest(off)) + rounding);
     for (int k = 0; k < 3; ++k) {
-        const Real wide = safe(1.06 * result.parametric * shape.side[k] / shape.twice_area);
+        const Real wide = safe(1.06 * result.parametric * shape.side[k] * shape.per_area);
         result.beside[k] = select(quiet, min(result.normal, safe(cubic.beside(k, off, wide) + rounding)), none);
         result.across[k] = select(quiet, result.across[k], Real{});
     }
