@@ -150,6 +150,7 @@ private:
     bool keeps(const PatchMesh& mesh, const PatchTriangle& t) const;
     struct Flip;
     Flip flip_of(const PatchMesh& mesh, std::uint32_t triangle, int edge) const;
+    bool in_vain(const PatchMesh& mesh, const Flip& f) const;
     bool flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) const;
     bool flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, bool with_neighbours) const;
     void mark(PatchMesh& mesh, std::uint32_t edge);

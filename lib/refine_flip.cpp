@@ -85,6 +85,14 @@ bool Refinement::flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) cons
     return true;
 }
 
+/// Is the surface farther than the tolerance from the middle of the new diagonal? Nothing is proved by that.
+bool Refinement::in_vain(const PatchMesh& mesh, const Flip& f) const {
+    const Vec2 &p = mesh.uv[f.from], &q = mesh.uv[f.to];
+    const Point x = f.left.cell->polynomial().point({0.5 * p.x + 0.5 * q.x, 0.5 * p.y + 0.5 * q.y});
+    const Point d = x - 0.5 * (positions_[mesh.vertex[f.from]] + positions_[mesh.vertex[f.to]]);
+    return (measure_ == Measure::parametric ? length(d) : std::fabs(dot(d, mesh.triangles[f.i].proof.unit))) > tolerance_;
+}
+
 /// The worst edge first. In polynomial cells all that can be turned are bounded together.
 bool Refinement::flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t i, bool with_neighbours) const {
     const int worst = mesh.triangles[i].proof.worst_edge;
@@ -93,7 +101,7 @@ bool Refinement::flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t i
     std::array<TriangleBound, 6> bounds;
     std::size_t n = 0;
     for (int k = 0; k < 3; ++k)
-        if (Flip f = flip_of(mesh, i, (worst + k) % 3); f.i != kNone) flips[n++] = f;
+        if (Flip f = flip_of(mesh, i, (worst + k) % 3); f.i != kNone && !(f.left.cell->polynomial().exists() && in_vain(mesh, f))) flips[n++] = f;
     if (n == 0) return false;
     const BoundCell* cell = flips[0].left.cell;
     const bool together = cell->polynomial().exists();

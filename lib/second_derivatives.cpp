@@ -138,7 +138,7 @@ constexpr double kBinomial[6][6] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}, {1, 4,
 
 }  // namespace
 
-double PolynomialCell::slack(const Vec2& p, const Point& x) const {
+Point PolynomialCell::point(const Vec2& p) const {
     const double du = p.x - u_, dv = p.y - v_;
     Lanes sum{};
     for (int i = p_; i >= 0; --i) {
@@ -152,8 +152,13 @@ double PolynomialCell::slack(const Vec2& p, const Point& x) const {
         step(at, sum, du);
         sum = at;
     }
+    return {sum[0], sum[1], sum[2]};
+}
+
+double PolynomialCell::slack(const Vec2& p, const Point& x) const {
+    const Point s = point(p);
     const auto off = [](double a, double b) { return rounding::up(std::fabs(a - b)); };
-    return rounding::up(rounding::length_up(off(sum[0], x.x), off(sum[1], x.y), off(sum[2], x.z)) + error_[0]);
+    return rounding::up(rounding::length_up(off(s.x, x.x), off(s.y, x.y), off(s.z, x.z)) + error_[0]);
 }
 
 SecondDerivatives PolynomialCell::operator()(const Box& box) const { return p_ == 3 && q_ == 3 ? over<3, 3>(box) : over<-1, -1>(box); }

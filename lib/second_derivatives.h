@@ -51,6 +51,8 @@ public:
     SecondDerivatives operator()(const Box& box) const;
     /// Third derivatives enclosed over parts x parts pieces.
     SecondDerivatives operator()(const Box& box, int parts) const;
+    /// Of the surface, but for rounding, at a point of the cell.
+    Point point(const Vec2& p) const;
     /// At least the distance of x from the surface at p, a point of the cell.
     double slack(const Vec2& p, const Point& x) const;
     /// Valid as long as the cell.
