@@ -1,7 +1,6 @@
 // refine_whole.cpp -- what a Refinement looks at in the end, so that the mesh is the whole surface and a manifold: edges that several pairs of
 // triangles have, and edges that none has.
 #include <algorithm>
-#include <unordered_map>
 #include <unordered_set>
 
 #include "refine.h"
@@ -20,7 +19,7 @@ std::uint64_t mesh_edge(const PatchMesh& mesh, const PatchEdge& e) {
 bool Refinement::mark_coincident_edges() {
     // In the plane of parameters two corners are joined by one edge at most. So are two mesh vertices, unless one of them
     // is several corners, which only vertices on rims can be.
-    std::unordered_map<std::uint64_t, int> count;
+    std::vector<std::uint64_t> sides;  // each edge once for every triangle beside it
     const auto each = [&](auto f) {
         for (auto& mesh : patches_)
             for (std::uint32_t i = 0; i < mesh.edges.size(); ++i) {
@@ -31,10 +30,15 @@ bool Refinement::mark_coincident_edges() {
                 if (beside > 0) f(mesh, i, mesh_edge(mesh, e), beside);
             }
     };
-    each([&](PatchMesh&, std::uint32_t, std::uint64_t key, int beside) { count[key] += beside; });
+    each([&](PatchMesh&, std::uint32_t, std::uint64_t key, int beside) { sides.insert(sides.end(), std::size_t(beside), key); });
+    std::sort(sides.begin(), sides.end());
+    std::vector<std::uint64_t> crowded;
+    for (std::size_t i = 2; i < sides.size(); ++i)
+        if (sides[i] == sides[i - 2] && (crowded.empty() || crowded.back() != sides[i])) crowded.push_back(sides[i]);
+    if (crowded.empty()) return false;
     bool any = false;
     each([&](PatchMesh& mesh, std::uint32_t edge, std::uint64_t key, int) {
-        if (count[key] <= 2) return;
+        if (!std::binary_search(crowded.begin(), crowded.end(), key)) return;
         mark(mesh, edge);
         any = true;
     });
