@@ -211,7 +211,6 @@ inline void bound_shape(const Shape& shape, const LanesAsked& ask, Result& resul
     result.worst_across = choose_edge(bend, shape.uu, shape.vv);
     const V3 n = shape.n;
     const Real slack = shape.slack, longest = shape.longest;
-    result.unit = n;
     result.tilt = safe((8.1 * slack * (longest + slack) + 33 * 0x1p-53 * longest * longest) * shape.per_area + 6 * 0x1p-53);
     result.turn = none, result.worst_turn = Real{};
     if (ask.turns && !least) result.turn = turn_of(n, shape.x, shape.b, q, shape.side, slack, result.worst_turn);
@@ -258,6 +257,7 @@ inline void bound_shape(const Shape& shape, const LanesAsked& ask, Result& resul
         result.across[k] = select(quiet, result.across[k], Real{});
     }
     result.normal = select(quiet, result.normal, none);
+    result.unit = select(planar, n, V3{Real{}, Real{}, Real{}});
     result.tilt = select(planar, result.tilt, none), result.turn = select(planar, result.turn, none);
     result.worst_turn = select(planar, result.worst_turn, Real{});
     result.quiet = quiet;
