@@ -64,7 +64,7 @@ double simplex_maximum(double a, double b, double c) {
     if (a + c - b < slack || a + b - c < slack || b + c - a < slack) return edge;
     // The form grows with its coefficients: lifting tiny ones to 1e-7 of the largest keeps D above 3e-7 of its square
     // and costs 1e-7 at most; rounding errors of D, at most 24 units of 1.1e-16 of that square, are below 1e-8 of it.
-    const double third = up(largest / 3), scale = 1 / largest;
+    const double third = up(largest * kThird), scale = 1 / largest;
     if (!std::isfinite(scale)) return third;
     a = std::max(a * scale, 1e-7), b = std::max(b * scale, 1e-7), c = std::max(c * scale, 1e-7);
     const double D = 2 * (a * b + b * c + c * a) - (a * a + b * b + c * c);

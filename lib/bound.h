@@ -59,6 +59,9 @@ struct Neighbour {
 /// The geometric bound of a triangle from its own numbers and those of the neighbours over edge k.
 double geometric_bound(const TriangleBound& t, const std::array<Neighbour, 3>& neighbours);
 
+/// 1/3 rounded up: a product by it is at least the third, up to the product's own rounding.
+inline constexpr double kThird = 0x1.5555555555556p-2;
+
 /// An upper bound of max over the simplex of a l0 l1 + b l1 l2 + c l2 l0, not below 0, exact but for rounding.
 double simplex_maximum(double a, double b, double c);
 

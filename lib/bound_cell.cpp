@@ -61,6 +61,18 @@ const BoundCell* BoundCell::child(const Patch& patch, const Box& of) const {
     return expected;  // another thread was faster, with the same numbers
 }
 
+const BoundCell* BoundCell::around(const Patch& patch, const Box& box) const {
+    const auto width = [](const Interval& x) { return x.hi - x.lo; };
+    const double large = exact_->exists() ? kLargePolynomial : kLarge;
+    const BoundCell* cell = this;
+    while (width(cell->box_.u) > large * width(box.u) && width(cell->box_.v) > large * width(box.v)) {
+        const BoundCell* finer = cell->child(patch, box);
+        if (!finer) break;
+        cell = finer;
+    }
+    return cell;
+}
+
 TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure, double turn, bool decide) {
     const Box box = box_of(triangle.uv);
     const bool turns = turn != TriangleBound::unasked;
@@ -68,13 +80,7 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
     // What no finer cell could go below, as far as the shape tells, whose bound is b.
     const auto least_of = [&](const TriangleShape& shape, const TriangleBound& b) { return b.quiet ? shape.least_normal() : shape.bound(measure, true, false, true).own(measure); };
     const auto passes = [&](const TriangleBound& b) { return b.own(measure) <= tolerance && (!turns || b.turn <= turn); };
-    const auto width = [](const Interval& x) { return x.hi - x.lo; };
-    const double large = cell->exact_->exists() ? kLargePolynomial : kLarge;
-    while (width(cell->box_.u) > large * width(box.u) && width(cell->box_.v) > large * width(box.v)) {
-        const BoundCell* finer = cell->child(patch, box);
-        if (!finer) break;
-        cell = finer;
-    }
+    cell = cell->around(patch, box);
     for (;;) {
         double help = 1;  // where the cell tells nothing
         if (cell->model_.bounded) {
@@ -110,6 +116,57 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
         if (!sharpest.quiet) sharpest.worst_edge = sharpest.worst_across = rough.worst_edge;
     }
     return sharpest;
+}
+
+namespace {
+
+/// Bounds those of the triangles that are named, eight at a time: use(k, bound) for each.
+template <class Use> void in_lanes(const PolynomialCell& cell, std::span<const CornerData> triangles, std::span<const int> which, const LanesAsked& asked, Use use) {
+    constexpr std::size_t lanes = TriangleLanes::size;
+    TriangleLanes eight;
+    TriangleBound bounds[lanes];
+    for (std::size_t first = 0; first < which.size(); first += lanes) {
+        const std::size_t n = std::min(lanes, which.size() - first);
+        for (std::size_t i = 0; i < lanes; ++i) eight.set(int(i), triangles[std::size_t(which[first + std::min(i, n - 1)])]);
+        bound_lanes(cell, eight, int(n), asked, bounds);
+        for (std::size_t i = 0; i < n; ++i) use(which[first + i], bounds[i]);
+    }
+}
+
+}  // namespace
+
+/// Bounds that are above the tolerance, in the order of bound(): third derivatives over pieces where that may help, first derivatives in the end.
+void BoundCell::sharpen(const Patch& patch, std::span<const CornerData> triangles, std::span<const int> which, double tolerance, const LanesAsked& asked,
+                        TriangleBound* bounds) const {
+    std::vector<int> near, rough;
+    const auto room = [&](int k) { return tolerance - triangles[std::size_t(k)].slack; };
+    const auto own = [&](int k) { return bounds[k].own(asked.measure); };
+    LanesAsked least = asked, pieces = asked;
+    least.least = true, least.turns = false, pieces.parts = SecondDerivatives::pieces;
+    in_lanes(*exact_, triangles, which, least, [&](int k, const TriangleBound& b) {
+        if (!(b.own(asked.measure) > (1 - kClear) * own(k)) && own(k) <= kNear * room(k)) near.push_back(k);
+    });
+    in_lanes(*exact_, triangles, near, pieces, [&](int k, const TriangleBound& b) {
+        if (b.own(asked.measure) < own(k)) bounds[k] = b;
+        if (!(own(k) <= room(k)) && !bounds[k].quiet) rough.push_back(k);
+    });
+    for (const int k : rough) {
+        const TriangleBound b = bound_triangle(patch, triangles[std::size_t(k)].uv, triangles[std::size_t(k)].points);
+        if (!(b.parametric < bounds[k].parametric)) continue;
+        bounds[k].parametric = b.parametric;
+        bounds[k].worst_edge = bounds[k].worst_across = b.worst_edge;
+    }
+}
+
+void BoundCell::bound_all(const Patch& patch, std::span<const CornerData> triangles, double tolerance, Measure measure, double turn, bool quick, TriangleBound* bounds) const {
+    const LanesAsked asked{measure, 1, false, turn != TriangleBound::unasked};
+    std::vector<int> all(triangles.size()), above;
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] = int(k);
+    in_lanes(*exact_, triangles, all, asked, [&](int k, const TriangleBound& b) {
+        bounds[k] = b;
+        if (!(b.own(measure) <= tolerance - triangles[std::size_t(k)].slack)) above.push_back(k);
+    });
+    if (!quick && !above.empty()) sharpen(patch, triangles, above, tolerance, asked, bounds);
 }
 
 }  // namespace isoparm

@@ -1,6 +1,7 @@
 #include "composite.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -47,27 +48,43 @@ void add(Bounds& box, const Point& p) {
     for (int axis = 0; axis < 3; ++axis) box.low[axis] = std::min(box.low[axis], p[axis]), box.high[axis] = std::max(box.high[axis], p[axis]);
 }
 
-void add(Bounds& box, const Patch& patch) {
-    const Rect r = patch.rect();
-    const std::size_t nu = 16 * (patch.breaks_u().size() + 1), nv = 16 * (patch.breaks_v().size() + 1);
-    const double du = (r.u1 - r.u0) / nu, dv = (r.v1 - r.v0) / nv;
-    std::vector<double> u, v;
-    for (std::size_t i = 0; i <= nu; ++i)
-        for (std::size_t j = 0; j <= (patch.domain() == Domain::triangle ? nu - i : nv); ++j) {
-            u.push_back(i == nu ? r.u1 : r.u0 + du * i);
-            v.push_back(j == nv ? r.v1 : r.v0 + dv * j);
+/// The highest of a grid of samples of a patch along an axis, up or down.
+struct Top {
+    Vec2 at;
+    double height = -kHuge, step = 0;  // step: the largest difference between neighbours on the grid
+};
+
+struct Tops {
+    double du, dv;                // of the grid
+    std::array<Top, 6> top;       // x, -x, y, -y, z, -z
+    static double height(std::size_t way, const Point& p) { return way % 2 ? -p[int(way / 2)] : p[int(way / 2)]; }
+
+    explicit Tops(const Patch& patch) {
+        const Rect r = patch.rect();
+        const std::size_t nu = 16 * (patch.breaks_u().size() + 1), nv = 16 * (patch.breaks_v().size() + 1);
+        du = (r.u1 - r.u0) / nu, dv = (r.v1 - r.v0) / nv;
+        std::vector<double> u, v;
+        std::vector<std::size_t> before;  // the neighbour at smaller u
+        std::size_t last = 0;
+        for (std::size_t i = 0; i <= nu; ++i) {
+            const std::size_t first = u.size();
+            for (std::size_t j = 0; j <= (patch.domain() == Domain::triangle ? nu - i : nv); ++j) {
+                u.push_back(i == nu ? r.u1 : r.u0 + du * i);
+                v.push_back(j == nv ? r.v1 : r.v0 + dv * j);
+                before.push_back(i > 0 ? last + j : first);
+            }
+            last = first;
         }
-    std::vector<Point> x(u.size());
-    patch.points(u.size(), u.data(), v.data(), x.data());
-    for (int axis = 0; axis < 3; ++axis)
-        for (const double sign : {-1.0, 1.0}) {
-            std::size_t top = 0;
-            for (std::size_t i = 1; i < x.size(); ++i)
-                if (sign * x[i][axis] > sign * x[top][axis]) top = i;
-            const Vec2 at = climb(patch, {u[top], v[top]}, du, dv, [&](const Point& p) { return sign * p[axis]; });
-            add(box, patch.point(at.x, at.y));
-        }
-}
+        std::vector<Point> x(u.size());
+        patch.points(u.size(), u.data(), v.data(), x.data());
+        for (std::size_t way = 0; way < top.size(); ++way)
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const double h = height(way, x[i]), step = std::max(std::fabs(h - height(way, x[before[i]])), i > 0 && u[i - 1] == u[i] ? std::fabs(h - height(way, x[i - 1])) : 0);
+                top[way].step = std::max(top[way].step, step);
+                if (h > top[way].height) top[way].height = h, top[way].at = {u[i], v[i]};
+            }
+    }
+};
 
 }  // namespace
 
@@ -80,7 +97,21 @@ Bounds united(const Bounds& a, const Bounds& b) {
 
 Bounds bounding_box(const Composite& surface) {
     Bounds box = nothing();
-    for (const auto& member : surface) add(box, member.patch);
+    std::vector<Tops> tops;
+    std::array<double, 6> highest;
+    highest.fill(-kHuge);
+    for (const auto& member : surface) {
+        tops.emplace_back(member.patch);
+        for (std::size_t way = 0; way < 6; ++way) highest[way] = std::max(highest[way], tops.back().top[way].height);
+    }
+    // Only from near the highest samples of all.
+    for (std::size_t m = 0; m < surface.size(); ++m)
+        for (std::size_t way = 0; way < 6; ++way) {
+            const Top& top = tops[m].top[way];
+            if (top.height + top.step < highest[way]) continue;
+            const Vec2 at = climb(surface[m].patch, top.at, tops[m].du, tops[m].dv, [&](const Point& p) { return Tops::height(way, p); });
+            add(box, surface[m].patch.point(at.x, at.y));
+        }
     return box;
 }
 

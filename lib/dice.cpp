@@ -12,6 +12,7 @@ constexpr double kBisected = 1.7;     // what a triangle above the tolerance cos
 constexpr double kFew = 1.05, kMany = 0.75;  // of the vertices wanted on a line
 constexpr double kPeak = 64;          // times the median of all samples
 constexpr double kStep = 1.19;        // between the numbers of lines that are tried
+constexpr int kInVain = 2;            // steps that do not help end the search
 
 /// Error of a triangle whose edges bend by a, b, c.
 double error_of(const Point& a, const Point& b, const Point& c, Measure measure) {
@@ -76,6 +77,22 @@ double error_of(const Bend& b, double a, double c, Measure measure) {
     return error_of(uu, vv, dot(plus, plus) < dot(minus, minus) ? plus : minus, measure);
 }
 
+/// The largest a, from 1e-4 to 1, whose error is at most the target, to about 0.3 % of what it may be short of it. Errors are from (a a |uu|)/8 to
+/// (a a |uu| + c c |vv|)/6; false position in between.
+double widest(const Bend& b, double c, double target, Measure measure) {
+    const double uu = length(b.uu), vv = c * c * length(b.vv);
+    double low = 1e-4, high = uu > 0 ? std::clamp(std::sqrt(8 * target / uu), low, 1.0) : 1;
+    double error_high = error_of(b, high, c, measure);
+    if (error_high <= target) return high;
+    if (uu > 0 && 6 * target > vv) low = std::clamp(std::sqrt((6 * target - vv) / uu), low, high);
+    double error_low = error_of(b, low, c, measure);
+    for (int step = 0; step < 6 && error_low < 0.997 * target && error_high > error_low; ++step) {
+        const double a = low + (high - low) * (target - error_low) / (error_high - error_low), error = error_of(b, a, c, measure);
+        (error <= target ? low : high) = a, (error <= target ? error_low : error_high) = error;
+    }
+    return low;
+}
+
 /// n lines across a box: how dense vertices on them are at each sample, and about how many triangles come of it all.
 struct Plan {
     int n = 0;
@@ -92,13 +109,7 @@ Plan plan(const Oriented& bends, const std::vector<double>& dv, int n, double to
             const Bend b = bends(i, j);
             const double c = 1 / (n * dv[j]);
             // The widest triangle that passes; where none does, because lines are too far apart, one that does not add much.
-            const double target = std::max(kUse * tolerance, 1.3 * error_of(b, 0, c, measure));
-            double low = 1e-4, high = 1;
-            if (error_of(b, high, c, measure) <= target) low = high;
-            for (int step = 0; step < 12 && low < high; ++step) {
-                const double a = std::sqrt(low * high);
-                (error_of(b, a, c, measure) <= target ? low : high) = a;
-            }
+            const double target = std::max(kUse * tolerance, 1.3 / 8 * c * c * length(b.vv)), low = widest(b, c, target, measure);
             p.density[i][j] = 1 / low;
             p.triangles += 2 * n * dv[j] / low * outcome(target, tolerance) / (kSamples * kSamples);
             if (p.triangles > most) return p;
@@ -193,9 +204,22 @@ DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure meas
             for (int j = 0; j < kSamples; ++j) squares += dot(bends(i, j).uu, bends(i, j).uu) * columns + dot(bends(i, j).vv, bends(i, j).vv) * !columns;
         const double usual = std::sqrt(std::sqrt(squares) / kSamples / (6 * tolerance));
         if (!(usual * usual <= most)) return DiceGrid::single(box);
-        for (double n = std::max(1.0, usual / 2); n <= 2 + 3 * usual; n = std::max(n + 1, n * kStep)) {
+        const auto better = [&](double n) {
             const Plan p = plan(turned, dv, int(n), tolerance, measure, best.triangles);
-            if (p.triangles < best.triangles * (1 - 1e-9)) best = p, best_density = dv, best_columns = columns;
+            const bool found = p.triangles < best.triangles * (1 - 1e-9);
+            if (found) best = p, best_density = dv, best_columns = columns;
+            return found;
+        };
+        // From there to more of them, or to fewer, as long as that helps; a second step may help where the first does not, as numbers are whole.
+        const double first = std::max(1.0, usual);
+        better(first);
+        for (const bool more : {true, false}) {
+            int in_vain = 0;
+            for (double n = first; in_vain < kInVain;) {
+                const double next = more ? std::max(std::floor(n) + 1, n * kStep) : std::min(std::ceil(n) - 1, n / kStep);
+                if (next < 1) break;
+                in_vain = better(n = next) ? 0 : in_vain + 1;
+            }
         }
     }
     if (!(best.triangles <= most)) return DiceGrid::single(box);

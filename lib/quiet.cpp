@@ -6,12 +6,6 @@
 #include "scalar/safe.h"
 
 namespace isoparm {
-namespace {
-
-/// The largest value of s (1 - s) |2 s - 1| on [0,1], sqrt(3)/18, rounded up.
-constexpr double kOdd = 0.0963;
-
-}  // namespace
 
 double largest_form(const std::array<double, 3>& b, const std::array<double, 3>& q) {
     return std::max(simplex_maximum(q[0] + b[0], q[1] + b[1], q[2] + b[2]), simplex_maximum(q[0] - b[0], q[1] - b[1], q[2] - b[2]));
@@ -23,21 +17,21 @@ CubicForm::CubicForm(const Point& n, const std::array<double, 3>& b, const std::
         const double uu = x.x * y.x, uv = x.x * y.y + x.y * y.x, vv = x.y * y.y;
         return z.x * (uu * f[0] + uv * f[1] + vv * f[2]) + z.y * (uu * f[1] + uv * f[2] + vv * f[3]);
     };
-    const Vec2 g{(uv[0].x + uv[1].x + uv[2].x) / 3, (uv[0].y + uv[1].y + uv[2].y) / 3};
+    const Vec2 g{(uv[0].x + uv[1].x + uv[2].x) * kThird, (uv[0].y + uv[1].y + uv[2].y) * kThird};
     std::array<Vec2, 3> v;
     std::array<double, 3> corner;
     for (int c = 0; c < 3; ++c) v[c] = {uv[c].x - g.x, uv[c].y - g.y}, corner[c] = blossom(v[c], v[c], v[c]);
     // Bernstein coefficients of the cubic's own deviation from its linear interpolant; the even parts of those on edges are quadratic.
-    double inner = 6 * ((corner[0] + corner[1] + corner[2]) / 3 - blossom(v[0], v[1], v[2])), odd = 0;
+    double inner = 6 * ((corner[0] + corner[1] + corner[2]) * kThird - blossom(v[0], v[1], v[2])), odd = 0;
     for (int k = 0; k < 3; ++k) {
         const Vec2 &x = v[k], &y = v[kNext[k]], e{y.x - x.x, y.y - x.y};
-        const double first = (2 * corner[k] + corner[kNext[k]]) / 3 - blossom(x, x, y), second = (corner[k] + 2 * corner[kNext[k]]) / 3 - blossom(x, y, y);
+        const double first = (2 * corner[k] + corner[kNext[k]]) * kThird - blossom(x, x, y), second = (corner[k] + 2 * corner[kNext[k]]) * kThird - blossom(x, y, y);
         const double even = 1.5 * (first + second);
-        form_[k] = b[k] + blossom(e, e, {g.x - m.x, g.y - m.y}) + even / 3;
+        form_[k] = b[k] + blossom(e, e, {g.x - m.x, g.y - m.y}) + even * kThird;
         inner -= even;
         odd += 1.5 * std::fabs(first - second);
     }
-    rest_ = (std::fabs(inner) / 27 + kOdd * odd) / 6;
+    rest_ = std::fabs(inner) * kInner + kOdd / 6 * odd;
 }
 
 double CubicForm::largest(const std::array<double, 3>& q) const { return 0.5 * largest_form(form_, q) + rest_; }

@@ -4,9 +4,17 @@
 #include <array>
 #include <cmath>
 
+#include "bound.h"
 #include "scalar/vec.h"
 
 namespace isoparm {
+
+/// Times the sum of the absolute terms: at least the rounding error of H(m)[e,e] and of its products with unit vectors.
+inline constexpr double kRounding = 64 * 0x1p-53;
+/// The largest value of s (1 - s) |2 s - 1| on [0,1], sqrt(3)/18, rounded up.
+inline constexpr double kOdd = 0.0963;
+/// 1/(6 * 27), rounded up.
+inline constexpr double kInner = 1.0 / 162 * (1 + 0x1p-52);
 
 /// The edge after edge k, and the corner after corner k.
 inline constexpr std::array<int, 3> kNext{1, 2, 0};
@@ -29,7 +37,7 @@ struct EdgeBend {
     /// At least the length of H[e,e] anywhere on the edge.
     double largest() const { return length(middle) + length(end) + off; }
     /// S - L along the unit vector f is at most s (1 - s)/2 times that, s from 0 to 1 along the edge.
-    double along(const Point& f) const { return std::fabs(dot(f, middle)) + std::fabs(dot(f, end)) / 3 + off; }
+    double along(const Point& f) const { return std::fabs(dot(f, middle)) + std::fabs(dot(f, end)) * kThird + off; }
 };
 
 /// -n.(S - L) over a triangle, for third derivatives that are constant: half of sum form_k l_k l_k+1, and a rest.

@@ -5,18 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
-#include <unordered_set>
-
 
 namespace isoparm {
 namespace {
 
 /// Runs f(member, index) over all items of all patches, in parallel; `count(member)` items each.
-template <class Count, class F> void for_all(std::size_t members, Count count, F f) {
+template <class Count, class F> void for_all(std::size_t members, Count count, F f, std::size_t grain = 64) {
     std::vector<std::size_t> start(members + 1, 0);
     for (std::size_t m = 0; m < members; ++m) start[m + 1] = start[m] + count(m);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, start.back(), 64), [&](const tbb::blocked_range<std::size_t>& range) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, start.back(), grain), [&](const tbb::blocked_range<std::size_t>& range) {
         std::size_t m = std::upper_bound(start.begin(), start.end(), range.begin()) - start.begin() - 1;
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             while (i >= start[m + 1]) ++m;
@@ -25,14 +22,10 @@ template <class Count, class F> void for_all(std::size_t members, Count count, F
     });
 }
 
+/// Triangles that are bounded in one go.
+constexpr std::size_t kTogether = 64;
 /// Slack below this part of the tolerance need not be sharp.
 constexpr double kFew = 1e-8;
-
-/// A name for the mesh edge that an edge of a patch is, the same whichever patch and direction it is seen from.
-std::uint64_t mesh_edge(const PatchMesh& mesh, const PatchEdge& e) {
-    const auto [a, b] = std::minmax(mesh.vertex[e.a], mesh.vertex[e.b]);
-    return (std::uint64_t(a) << 32) | b;
-}
 
 }  // namespace
 
@@ -50,6 +43,7 @@ void Refinement::replace(std::vector<PatchMesh> patches, std::vector<RimNode> ri
     for (std::size_t m = 0; m < patches_.size(); ++m) {
         patches[m].cells = std::move(patches_[m].cells);
         patches_[m] = std::move(patches[m]);
+        patches_[m].settled.assign(patches_[m].triangles.size(), kUnsettled);
         measure_slack(std::uint32_t(m), 0);
     }
     worst_slack_ = 0;
@@ -77,17 +71,40 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
     });
 }
 
-void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide) const {
+CornerData Refinement::corners_of(const PatchMesh& mesh, const PatchTriangle& t) const {
     CornerData data;
     for (int k = 0; k < 3; ++k) data.uv[k] = mesh.uv[t.corner[k]], data.points[k] = positions_[mesh.vertex[t.corner[k]]];
     data.slack = mesh.slack_of(t);
+    return data;
+}
+
+void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide) const {
+    const CornerData data = corners_of(mesh, t);
     t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_, turn_, decide);
 }
 
+/// Those of one polynomial cell after the other go together.
+void Refinement::bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const {
+    std::array<CornerData, kTogether> data;
+    std::array<TriangleBound, kTogether> bounds;
+    const auto triangle = [&](std::size_t i) -> PatchTriangle& { return mesh.triangles[mesh.fresh[i]]; };
+    while (first < last) {
+        const BoundCell* cell = triangle(first).cell;
+        if (!cell->polynomial().exists()) {
+            bound(mesh, member, triangle(first++));
+            continue;
+        }
+        std::size_t n = 0;
+        while (first + n < last && triangle(first + n).cell == cell) data[n] = corners_of(mesh, triangle(first + n)), ++n;
+        cell->bound_all(surface_[member].patch, {data.data(), n}, tolerance_, measure_, turn_, false, bounds.data());
+        for (std::size_t i = 0; i < n; ++i) triangle(first++).proof = bounds[i];
+    }
+}
+
 bool Refinement::bound_and_mark() {
-    for_all(patches_.size(), [&](std::size_t m) { return patches_[m].fresh.size(); }, [&](std::size_t m, std::size_t i) {
-        bound(patches_[m], std::uint32_t(m), patches_[m].triangles[patches_[m].fresh[i]]);
-    });
+    for_all(patches_.size(), [&](std::size_t m) { return (patches_[m].fresh.size() + kTogether - 1) / kTogether; }, [&](std::size_t m, std::size_t i) {
+        bound_fresh(patches_[m], std::uint32_t(m), i * kTogether, std::min((i + 1) * kTogether, patches_[m].fresh.size()));
+    }, 1);
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
         PatchMesh& mesh = patches_[m];
         for (const auto i : mesh.fresh) {
@@ -153,39 +170,41 @@ double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const
 double Refinement::worst_bound_of(std::size_t member) const {
     const PatchMesh& mesh = patches_[member];
     return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 1024), 0.0, [&](const auto& range, double worst) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) worst = std::max(worst, bound_of(mesh, std::uint32_t(i)));
+        for (std::size_t i = range.begin(); i < range.end(); ++i) worst = std::max(worst, mesh.settled[i] != kUnsettled ? mesh.settled[i] : bound_of(mesh, std::uint32_t(i)));
         return worst;
     }, [](double a, double b) { return std::max(a, b); });
 }
 
 bool Refinement::mark_with_neighbours() {
     if (measure_ == Measure::parametric) return false;
-    std::vector<std::vector<char>> fails(patches_.size());
-    for (std::size_t m = 0; m < patches_.size(); ++m) fails[m].assign(patches_[m].triangles.size(), 0);
-    for_all(patches_.size(), [&](std::size_t m) { return fails[m].size(); }, [&](std::size_t m, std::size_t i) {
-        PatchTriangle& t = patches_[m].triangles[i];
-        t.settled = t.settled || bound_of(patches_[m], std::uint32_t(i)) <= tolerance_;
-        fails[m][i] = !t.settled;
+    std::vector<std::vector<std::uint32_t>> open(patches_.size());
+    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
+        for (std::uint32_t i = 0; i < patches_[m].settled.size(); ++i)
+            if (patches_[m].settled[i] == kUnsettled) open[m].push_back(i);
+    });
+    for_all(patches_.size(), [&](std::size_t m) { return open[m].size(); }, [&](std::size_t m, std::size_t i) {
+        const double bound = bound_of(patches_[m], open[m][i]);
+        if (bound <= tolerance_) patches_[m].settled[open[m][i]] = bound;
     });
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
         PatchMesh& mesh = patches_[m];
-        for (std::uint32_t i = 0; i < fails[m].size(); ++i)
-            if (fails[m][i]) fails[m][i] = !(bound_of(mesh, i) <= tolerance_) && !flip_any(mesh, std::uint32_t(m), i, true);
+        // Turning one edge may have mended the next triangle.
+        const auto mended = [&](std::uint32_t i) { return mesh.settled[i] != kUnsettled || bound_of(mesh, i) <= tolerance_ || flip_any(mesh, std::uint32_t(m), i, true); };
+        open[m].erase(std::remove_if(open[m].begin(), open[m].end(), mended), open[m].end());
     });
     bool any = false;
     for (std::size_t m = 0; m < patches_.size(); ++m)
-        for (std::size_t i = 0; i < fails[m].size(); ++i)
-            if (fails[m][i]) {
-                PatchMesh& mesh = patches_[m];
-                const PatchTriangle* worst = &mesh.triangles[i];
-                // Mostly it is a neighbour that is near the tolerance by itself: the one with the largest bound is split.
-                if (worst->proof.quiet)
-                    for (const auto e : mesh.triangles[i].edge)
-                        for (const auto other : mesh.edges[e].side)
-                            if (other != kNone && mesh.triangles[other].proof.quiet && mesh.triangles[other].proof.normal > worst->proof.normal) worst = &mesh.triangles[other];
-                mark(mesh, worst->edge[worst->proof.quiet ? worst->proof.worst_edge : worst->proof.worst_across]);
-                any = true;
-            }
+        for (const auto i : open[m]) {
+            PatchMesh& mesh = patches_[m];
+            const PatchTriangle* worst = &mesh.triangles[i];
+            // Mostly it is a neighbour that is near the tolerance by itself: the one with the largest bound is split.
+            if (worst->proof.quiet)
+                for (const auto e : mesh.triangles[i].edge)
+                    for (const auto other : mesh.edges[e].side)
+                        if (other != kNone && mesh.triangles[other].proof.quiet && mesh.triangles[other].proof.normal > worst->proof.normal) worst = &mesh.triangles[other];
+            mark(mesh, worst->edge[worst->proof.quiet ? worst->proof.worst_edge : worst->proof.worst_across]);
+            any = true;
+        }
     return any;
 }
 
@@ -198,60 +217,6 @@ void Refinement::mark(PatchMesh& mesh, std::uint32_t edge) {
         rim_nodes_[e.rim_node].marked = true;
         marked_rims_.push_back(e.rim_node);
     }
-}
-
-bool Refinement::mark_coincident_edges() {
-    // In the plane of parameters two corners are joined by one edge at most. So are two mesh vertices, unless one of them
-    // is several corners, which only vertices on rims can be.
-    std::unordered_map<std::uint64_t, int> count;
-    const auto each = [&](auto f) {
-        for (auto& mesh : patches_)
-            for (std::uint32_t i = 0; i < mesh.edges.size(); ++i) {
-                const PatchEdge& e = mesh.edges[i];
-                if (e.child != kNone || !(shared_[mesh.vertex[e.a]] || shared_[mesh.vertex[e.b]])) continue;
-                int beside = 0;
-                for (const auto t : e.side) beside += t != kNone && !mesh.left_out(mesh.triangles[t]);
-                if (beside > 0) f(mesh, i, mesh_edge(mesh, e), beside);
-            }
-    };
-    each([&](PatchMesh&, std::uint32_t, std::uint64_t key, int beside) { count[key] += beside; });
-    bool any = false;
-    each([&](PatchMesh& mesh, std::uint32_t edge, std::uint64_t key, int) {
-        if (count[key] <= 2) return;
-        mark(mesh, edge);
-        any = true;
-    });
-    return any;
-}
-
-bool Refinement::mark_lost_edges() {
-    const auto any_left_out = [](const PatchMesh& mesh) {
-        return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const PatchTriangle& t) { return mesh.left_out(t); });
-    };
-    if (std::none_of(patches_.begin(), patches_.end(), any_left_out)) return false;
-    // A segment that is left out joins two vertices that it shares with other triangles, or is the whole of a patch.
-    std::unordered_set<std::uint64_t> kept;
-    std::vector<char> named(positions_.size(), 0);
-    for (const auto& mesh : patches_)
-        for (const auto& t : mesh.triangles) {
-            if (mesh.left_out(t)) continue;
-            for (const auto e : t.edge)
-                if (shared_[mesh.vertex[mesh.edges[e].a]] || shared_[mesh.vertex[mesh.edges[e].b]]) kept.insert(mesh_edge(mesh, mesh.edges[e]));
-            for (const auto v : mesh.vertices(t)) named[v] = 1;
-        }
-    bool any = false;
-    for (auto& mesh : patches_)
-        for (const auto& t : mesh.triangles) {
-            if (!mesh.left_out(t)) continue;
-            for (const auto e : t.edge) {
-                const PatchEdge& edge = mesh.edges[e];
-                const bool point = mesh.vertex[edge.a] == mesh.vertex[edge.b];
-                if (point ? named[mesh.vertex[edge.a]] : kept.count(mesh_edge(mesh, edge)) > 0) continue;
-                if (!point) mark(mesh, e);
-                any = true;
-            }
-        }
-    return any;
 }
 
 std::size_t Refinement::triangle_count() const {

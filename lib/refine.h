@@ -18,6 +18,7 @@
 namespace isoparm {
 
 inline constexpr std::uint32_t kNone = UINT32_MAX;
+inline constexpr double kUnsettled = -1;
 
 /// A dyadic piece [f0,f1] of a rim between two mesh vertices.
 struct RimNode {
@@ -44,7 +45,6 @@ struct PatchTriangle {
     std::array<std::uint32_t, 3> edge{};  // edge k joins corners k and k+1
     const BoundCell* cell = nullptr;
     TriangleBound proof{};                // slack of the corners not included
-    bool settled = false;                 // below the tolerance with the neighbours that it has now
 };
 
 struct PatchMesh {
@@ -53,6 +53,7 @@ struct PatchMesh {
     std::vector<double> slack;          // at least the distance of the mesh vertex from the exact patch at uv
     std::vector<PatchEdge> edges;
     std::vector<PatchTriangle> triangles;
+    std::vector<double> settled;        // the bound of each triangle with the neighbours that it has now, at most the tolerance; kUnsettled: not known
     std::vector<std::uint32_t> fresh;   // triangles not bounded yet
     std::vector<std::uint32_t> marked;  // edges to be bisected, those on rims not included
     std::vector<std::unique_ptr<BoundCell>> cells;
@@ -142,8 +143,15 @@ private:
     void place_vertices(std::uint32_t member, std::size_t first_corner, std::uint32_t first_vertex);
     void measure_slack(std::uint32_t member, std::size_t first);
     void collect_slack(const std::vector<std::size_t>& first);
+    CornerData corners_of(const PatchMesh& mesh, const PatchTriangle& t) const;
     void bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
-    bool flip(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, int edge, bool with_neighbours) const;
+    void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
+    bool may_lose(const PatchMesh& mesh) const;
+    bool keeps(const PatchMesh& mesh, const PatchTriangle& t) const;
+    struct Flip;
+    Flip flip_of(const PatchMesh& mesh, std::uint32_t triangle, int edge) const;
+    bool in_vain(const PatchMesh& mesh, const Flip& f) const;
+    bool flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) const;
     bool flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, bool with_neighbours) const;
     void mark(PatchMesh& mesh, std::uint32_t edge);
 

@@ -27,56 +27,97 @@ const BoundCell* PatchMesh::root_of(const std::array<std::uint32_t, 3>& corner) 
     return cells[index(breaks_u, &Vec2::x) * (breaks_v.size() + 1) + index(breaks_v, &Vec2::y)].get();
 }
 
-/// Turns edge k of a triangle into the other diagonal of the quadrilateral around it, if the two triangles are below the tolerance
-/// then: each by itself, or with all their neighbours, which must be as well.
-bool Refinement::flip(PatchMesh& mesh, std::uint32_t member, std::uint32_t i, int k, bool with_neighbours) const {
-    PatchTriangle& t = mesh.triangles[i];
+/// A diagonal, and the two triangles beside it if it were the other one.
+struct Refinement::Flip {
+    std::uint32_t i = kNone, j = kNone, diagonal = kNone, from = 0, to = 0;  // kNone: it cannot be turned
+    PatchTriangle left, right;
+};
+
+/// Edge k of a triangle, turned into the other diagonal of the quadrilateral around it.
+Refinement::Flip Refinement::flip_of(const PatchMesh& mesh, std::uint32_t i, int k) const {
+    const PatchTriangle& t = mesh.triangles[i];
     const auto diagonal = t.edge[k];
-    PatchEdge& e = mesh.edges[diagonal];
+    const PatchEdge& e = mesh.edges[diagonal];
     const auto j = e.side[0] == i ? e.side[1] : e.side[0];
-    if (e.rim_node != kNone || e.marked || j == kNone || mesh.on_break(e)) return false;
-    PatchTriangle& o = mesh.triangles[j];
+    if (e.rim_node != kNone || e.marked || j == kNone || mesh.on_break(e)) return {};
+    const PatchTriangle& o = mesh.triangles[j];
     const int m = int(std::find(o.edge.begin(), o.edge.end(), diagonal) - o.edge.begin());
     const auto a = t.corner[k], b = t.corner[(k + 1) % 3], c = t.corner[(k + 2) % 3], d = o.corner[(m + 2) % 3];
-    if (mesh.vertex[c] == mesh.vertex[d] || mesh.left_out(t) || mesh.left_out(o)) return false;
+    if (mesh.vertex[c] == mesh.vertex[d] || mesh.left_out(t) || mesh.left_out(o)) return {};
     const auto area = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) { return twice_area(mesh.uv[p], mesh.uv[q], mesh.uv[r]); };
     const double thin = 0.02 * (area(a, b, c) + area(b, a, d));  // both triangles have some area: the quadrilateral is convex
-    if (!(area(a, d, c) > thin && area(d, b, c) > thin)) return false;
+    if (!(area(a, d, c) > thin && area(d, b, c) > thin)) return {};
+    Flip f{i, j, diagonal, c, d, {}, {}};
+    f.left.corner = {a, d, c}, f.left.edge = {o.edge[(m + 1) % 3], diagonal, t.edge[(k + 2) % 3]};
+    f.right.corner = {d, b, c}, f.right.edge = {o.edge[(m + 2) % 3], t.edge[(k + 1) % 3], diagonal};
+    for (PatchTriangle* n : {&f.left, &f.right}) n->cell = mesh.root_of(n->corner);
+    return f;
+}
 
-    PatchTriangle left, right;
-    left.corner = {a, d, c}, left.edge = {o.edge[(m + 1) % 3], diagonal, t.edge[(k + 2) % 3]};
-    right.corner = {d, b, c}, right.edge = {o.edge[(m + 2) % 3], t.edge[(k + 1) % 3], diagonal};
-    for (PatchTriangle* n : {&left, &right}) {
-        n->cell = mesh.root_of(n->corner);
-        bound(mesh, member, *n, true);
-        if (!(n->proof.own(measure_) + mesh.slack_of(*n) <= tolerance_ && turns_little(mesh, *n))) return false;
-    }
+bool Refinement::keeps(const PatchMesh& mesh, const PatchTriangle& t) const {
+    return t.proof.own(measure_) + mesh.slack_of(t) <= tolerance_ && turns_little(mesh, t);
+}
+
+/// Turns an edge whose new triangles are below the tolerance by themselves; with all their neighbours, these must be as well.
+bool Refinement::flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) const {
+    const auto i = f.i, j = f.j;
+    PatchTriangle &t = mesh.triangles[i], &o = mesh.triangles[j];
+    PatchEdge& e = mesh.edges[f.diagonal];
     const PatchTriangle before[2] = {t, o};
+    const std::array<std::uint32_t, 2> ends{e.a, e.b};
     const auto put = [&](const PatchTriangle& first, const PatchTriangle& second, std::uint32_t from, std::uint32_t to) {
         t = first, o = second, e.a = from, e.b = to;
-        claim(mesh, i, j, diagonal), claim(mesh, j, i, diagonal);
+        claim(mesh, i, j, f.diagonal), claim(mesh, j, i, f.diagonal);
     };
-    const auto any_beside = [&](auto f) {
+    const auto any_beside = [&](auto what) {
         for (const auto n : {i, j})
             for (const auto edge : mesh.triangles[n].edge)
                 for (const auto beside : mesh.edges[edge].side)
-                    if (beside != kNone && f(beside)) return true;
+                    if (beside != kNone && what(beside)) return true;
         return false;
     };
-    put(left, right, c, d);
+    put(f.left, f.right, f.from, f.to);
     if (with_neighbours && any_beside([&](std::uint32_t n) { return !mesh.left_out(mesh.triangles[n]) && !(bound_of(mesh, n) <= tolerance_); })) {
-        put(before[0], before[1], a, b);
+        put(before[0], before[1], ends[0], ends[1]);
         return false;
     }
-    any_beside([&](std::uint32_t n) { return mesh.triangles[n].settled = false; });
+    any_beside([&](std::uint32_t n) { return mesh.settled[n] = kUnsettled, false; });
     return true;
 }
 
-/// The worst edge first.
+/// Is the surface farther than the tolerance from the middle of the new diagonal? Nothing is proved by that.
+bool Refinement::in_vain(const PatchMesh& mesh, const Flip& f) const {
+    const Vec2 &p = mesh.uv[f.from], &q = mesh.uv[f.to];
+    const Point x = f.left.cell->polynomial().point({0.5 * p.x + 0.5 * q.x, 0.5 * p.y + 0.5 * q.y});
+    const Point d = x - 0.5 * (positions_[mesh.vertex[f.from]] + positions_[mesh.vertex[f.to]]);
+    return (measure_ == Measure::parametric ? length(d) : std::fabs(dot(d, mesh.triangles[f.i].proof.unit))) > tolerance_;
+}
+
+/// The worst edge first. In polynomial cells all that can be turned are bounded together.
 bool Refinement::flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t i, bool with_neighbours) const {
     const int worst = mesh.triangles[i].proof.worst_edge;
+    std::array<Flip, 3> flips;
+    std::array<CornerData, 6> data;
+    std::array<TriangleBound, 6> bounds;
+    std::size_t n = 0;
     for (int k = 0; k < 3; ++k)
-        if (flip(mesh, member, i, (worst + k) % 3, with_neighbours)) return true;
+        if (Flip f = flip_of(mesh, i, (worst + k) % 3); f.i != kNone && !(f.left.cell->polynomial().exists() && in_vain(mesh, f))) flips[n++] = f;
+    if (n == 0) return false;
+    const BoundCell* cell = flips[0].left.cell;
+    const bool together = cell->polynomial().exists();
+    for (std::size_t k = 0; k < n && together; ++k) data[2 * k] = corners_of(mesh, flips[k].left), data[2 * k + 1] = corners_of(mesh, flips[k].right);
+    if (together) cell->bound_all(surface_[member].patch, {data.data(), 2 * n}, tolerance_, measure_, turn_, true, bounds.data());
+    for (std::size_t k = 0; k < n; ++k) {
+        Flip& f = flips[k];
+        if (together) {
+            f.left.proof = bounds[2 * k], f.right.proof = bounds[2 * k + 1];
+        } else {
+            bound(mesh, member, f.left, true);
+            if (!keeps(mesh, f.left)) continue;
+            bound(mesh, member, f.right, true);
+        }
+        if (keeps(mesh, f.left) && keeps(mesh, f.right) && flip(mesh, f, with_neighbours)) return true;
+    }
     return false;
 }
 

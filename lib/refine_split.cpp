@@ -115,10 +115,10 @@ void Refinement::split_triangles(std::uint32_t member, std::uint32_t first_edge)
                 auto& side = mesh.edges[k].side;
                 side[k < first_edge ? side[0] != i : side[0] != kNone] = index;
                 for (const auto beside : side)
-                    if (beside < mesh.triangles.size()) mesh.triangles[beside].settled = false;
+                    if (beside < mesh.settled.size()) mesh.settled[beside] = kUnsettled;
             }
             if (first) mesh.triangles[i] = part;
-            else mesh.triangles.push_back(part);
+            else mesh.triangles.push_back(part), mesh.settled.push_back(kUnsettled);
             mesh.fresh.push_back(index);
             first = false;
         };

@@ -107,7 +107,12 @@ using Chain = std::vector<std::uint32_t>;  // corners along a line
 /// Makes the corners, edges and triangles of one patch.
 class Builder {
 public:
-    Builder(PatchMesh& mesh) : mesh_(mesh) {}
+    /// About as many triangles are to come.
+    Builder(PatchMesh& mesh, double triangles) : mesh_(mesh) {
+        const auto most = std::size_t(1.2 * triangles + 64);  // with those that bisection adds
+        mesh_.uv.reserve(most / 2), mesh_.vertex.reserve(most / 2), mesh_.slack.reserve(most / 2), first_.reserve(most / 2);
+        mesh_.triangles.reserve(most), mesh_.settled.reserve(most), mesh_.fresh.reserve(most), mesh_.edges.reserve(most / 2 * 3), next_.reserve(most / 2 * 3);
+    }
 
     std::uint32_t corner(const Vec2& p, std::uint32_t vertex = kNone) {
         mesh_.uv.push_back(p);
@@ -135,6 +140,7 @@ public:
         for (const auto e : t.edge) mesh_.edges[e].side[mesh_.edges[e].side[0] != kNone] = index;
         mesh_.fresh.push_back(index);
         mesh_.triangles.push_back(t);
+        mesh_.settled.push_back(kUnsettled);
     }
     /// Turns all triangles over: for chains in exchanged parameters.
     void mirror(bool mirrored) { mirrored_ = mirrored; }
@@ -165,10 +171,7 @@ private:
     Chain first_, next_;  // edges by their smaller corner
 };
 
-Chain backwards(Chain c) {
-    std::reverse(c.begin(), c.end());
-    return c;
-}
+Chain backwards(const Chain& c) { return Chain(c.rbegin(), c.rend()); }
 
 /// A cell whose sides, in the direction of growing parameters, are given.
 void fill_cell(Builder& build, const Bends& bends, DiceGrid grid, const std::array<Chain, 4>& side) {
@@ -226,7 +229,7 @@ void fill_triangle(Builder& build, const Bends& bends, int n, const std::array<C
 void Refinement::build_patch(std::uint32_t member, const Start& start) {
     const Patch& patch = surface_[member].patch;
     PatchMesh& mesh = patches_[member];
-    Builder build(mesh);
+    Builder build(mesh, start.triangles);
     std::map<std::pair<double, double>, std::uint32_t> known;  // on the boundary, and where breaks cross
     const auto corner = [&](const Vec2& p, std::uint32_t vertex) {
         const auto [it, fresh] = known.try_emplace({p.x, p.y}, 0);

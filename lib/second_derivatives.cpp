@@ -73,7 +73,7 @@ SecondDerivatives::SecondDerivatives(const Patch& patch, const Box& box, int par
 
 void SecondDerivatives::add_sizes(double ru, double rv) {
     for (int k = 0; k < 4; ++k) t_size[k] = safe(size_of(t[k]) + t_rad[k]);
-    for (int k = 0; k < 3; ++k) h_size[k] = safe(size_of(h[k]) + t_size[k] * ru + t_size[k + 1] * rv);
+    for (int k = 0; k < 3; ++k) h_size[k] = safe(std::fabs(h[k].x) + std::fabs(h[k].y) + std::fabs(h[k].z) + t_size[k] * ru + t_size[k + 1] * rv);
     const double all = h_size[0] + h_size[1] + h_size[2] + t_size[0] + t_size[1] + t_size[2] + t_size[3] + h_rad[0] + h_rad[1] + h_rad[2];
     bounded = all < kLargestDerivative && in_scale(ru) && in_scale(rv);
 }
@@ -138,7 +138,7 @@ constexpr double kBinomial[6][6] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}, {1, 4,
 
 }  // namespace
 
-double PolynomialCell::slack(const Vec2& p, const Point& x) const {
+Point PolynomialCell::point(const Vec2& p) const {
     const double du = p.x - u_, dv = p.y - v_;
     Lanes sum{};
     for (int i = p_; i >= 0; --i) {
@@ -152,8 +152,13 @@ double PolynomialCell::slack(const Vec2& p, const Point& x) const {
         step(at, sum, du);
         sum = at;
     }
+    return {sum[0], sum[1], sum[2]};
+}
+
+double PolynomialCell::slack(const Vec2& p, const Point& x) const {
+    const Point s = point(p);
     const auto off = [](double a, double b) { return rounding::up(std::fabs(a - b)); };
-    return rounding::up(rounding::length_up(off(sum[0], x.x), off(sum[1], x.y), off(sum[2], x.z)) + error_[0]);
+    return rounding::up(rounding::length_up(off(s.x, x.x), off(s.y, x.y), off(s.z, x.z)) + error_[0]);
 }
 
 SecondDerivatives PolynomialCell::operator()(const Box& box) const { return p_ == 3 && q_ == 3 ? over<3, 3>(box) : over<-1, -1>(box); }

@@ -16,7 +16,7 @@ struct SecondDerivatives {
     std::array<Point, 4> t{};              // S_uuu, S_uuv, S_uvv, S_vvv: middles of their ranges
     std::array<double, 4> t_rad{};         // at least the length of what they may be off by, anywhere in the cell
     std::array<double, 4> t_size{};        // at least their length
-    std::array<double, 3> h_size{};        // at least |h| + |t| times the half-widths: what rounding is relative to
+    std::array<double, 3> h_size{};        // at least |h| + |t| times the half-widths, |h| by its coordinates: what rounding is relative to
     bool bounded = false;                  // false: some of that has no bound, nothing else is set
 
     static constexpr int pieces = 3;  // along each direction, of the sharpest: more gain little
@@ -27,6 +27,14 @@ struct SecondDerivatives {
 
     /// Sets t_size, h_size and bounded from all else and the half-widths of the box.
     void add_sizes(double ru, double rv);
+};
+
+/// What a PolynomialCell knows, for loops over lanes.
+struct PolynomialForm {
+    int p, q;                        // degrees
+    double u, v;                     // the cell's middle
+    const std::array<double, 4>* c;  // x, y, z of the coefficient of (u' - u)^i (v' - v)^j at i (q + 1) + j, and nothing
+    const double* error;             // at least the length of what those about any point of the cell are off by in plain doubles
 };
 
 /// A cell of a patch where the surface is polynomial: its Taylor coefficients about the cell's middle in plain doubles, and bounds of
@@ -43,8 +51,12 @@ public:
     SecondDerivatives operator()(const Box& box) const;
     /// Third derivatives enclosed over parts x parts pieces.
     SecondDerivatives operator()(const Box& box, int parts) const;
+    /// Of the surface, but for rounding, at a point of the cell.
+    Point point(const Vec2& p) const;
     /// At least the distance of x from the surface at p, a point of the cell.
     double slack(const Vec2& p, const Point& x) const;
+    /// Valid as long as the cell.
+    PolynomialForm form() const { return {p_, q_, u_, v_, c_.data(), error_.data()}; }
 
 private:
     using Lanes = std::array<double, 4>;  // x, y, z of a coefficient, and nothing

@@ -99,6 +99,7 @@ Mesh to_mesh(const Composite& surface, const Topology& topology, const Refinemen
         part.flipped = topology.flipped[m];
         part.certified_error = refinement.worst_bound_of(m);
         if (bounds) keep_bounds(refinement, p, part.bounds);
+        part.triangles.reserve(p.triangles.size());
         for (const auto& t : p.triangles) {
             if (p.left_out(t)) {  // a collapsed edge: its two long sides are one mesh edge
                 part.left_out.push_back(t.corner);

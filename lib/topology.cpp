@@ -61,6 +61,7 @@ struct NodeOnEdge {
 struct EdgeShape {
     std::vector<Point> samples;
     Point low, high;
+    double step = 0;  // the longest between samples
     bool collapsed = true;
     std::vector<NodeOnEdge> nodes;
 };
@@ -69,6 +70,7 @@ EdgeShape sample_edge(const Patch& patch, int edge, double tolerance) {
     EdgeShape s;
     for (int i = 0; i <= kSamples; ++i) s.samples.push_back(edge_position(patch, edge, double(i) / kSamples));
     s.low = s.high = s.samples[0];
+    for (int i = 0; i < kSamples; ++i) s.step = std::max(s.step, distance(s.samples[i], s.samples[i + 1]));
     for (const auto& p : s.samples) {
         s.collapsed = s.collapsed && distance(p, s.samples[0]) <= tolerance;
         for (int axis = 0; axis < 3; ++axis) s.low[axis] = std::min(s.low[axis], p[axis]), s.high[axis] = std::max(s.high[axis], p[axis]);
@@ -239,9 +241,9 @@ Topology find_topology(const Composite& surface, double tolerance) {
                 const Point& p = table.points[*it];
                 if (p.y < s.low.y || p.y > s.high.y || p.z < s.low.z || p.z > s.high.z) continue;
                 if (std::any_of(s.nodes.begin(), s.nodes.end(), [&](const NodeOnEdge& n) { return n.node == *it; })) continue;
-                double near = HUGE_VAL;  // a sample cannot be farther than the node's distance plus the sampled step
+                double near = HUGE_VAL;  // a sample is no farther than the node's distance plus the sampled step, twice to be safe
                 for (const auto& q : s.samples) near = std::min(near, distance(p, q));
-                if (near > 0.25 * distance(s.low, s.high)) continue;
+                if (near > tolerance + 2 * s.step) continue;
                 const double t = nearest_on_edge(surface[m].patch, k, p, 0, 1);
                 if (t > 1e-7 && t < 1 - 1e-7 && distance(edge_position(surface[m].patch, k, t), p) <= tolerance) s.nodes.push_back({t, *it});
             }

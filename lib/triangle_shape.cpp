@@ -9,9 +9,6 @@
 namespace isoparm {
 namespace {
 
-/// Times the sum of the absolute terms: at least the rounding error of H(m)[e,e] and of its products with unit vectors.
-constexpr double kRounding = 64 * 0x1p-53;
-
 /// Right-handed orthonormal frame (up to 1e-15) whose first vector is n, or the axes where n is no unit vector.
 std::array<Point, 3> frame_of(const Point& n) {
     if (!(std::fabs(dot(n, n) - 1) < 4e-15)) return {Point{0, 0, 1}, Point{1, 0, 0}, Point{0, 1, 0}};
@@ -54,7 +51,8 @@ TriangleShape::TriangleShape(const SecondDerivatives& s, const CornerData& trian
     const Box box = box_of(p);
     mu_ = mid(box.u), mv_ = mid(box.v);
     ru_ = std::max(box.u.hi - mu_, mu_ - box.u.lo), rv_ = std::max(box.v.hi - mv_, mv_ - box.v.lo);
-    aspect_ = ru_ > 0 && rv_ > 0 ? rv_ / ru_ : 1;
+    const bool wide = ru_ > 0 && rv_ > 0;
+    aspect_[0] = wide ? rv_ / ru_ : 1, aspect_[1] = wide ? ru_ / rv_ : 1;
     const double du = mu_ - s.u, dv = mv_ - s.v;
     std::array<Point, 3> h;  // at (mu, mv)
     for (int k = 0; k < 3; ++k) h[k] = s.h[k] + du * s.t[k] + dv * s.t[k + 1];
@@ -67,9 +65,9 @@ TriangleShape::TriangleShape(const SecondDerivatives& s, const CornerData& trian
         side_[k] = length(x_[k]);
     }
     const Point normal = cross(x_[0], x_[1]);
-    twice_area_ = length(normal), longest_ = std::max({side_[0], side_[1], side_[2]});
+    twice_area_ = length(normal), per_area_ = 1 / twice_area_, longest_ = std::max({side_[0], side_[1], side_[2]});
     flat_ = twice_area_ > 1e-9 * longest_ * longest_ && twice_area_ > 1e-140;
-    n_ = flat_ ? normal / twice_area_ : Point{};
+    n_ = flat_ ? per_area_ * normal : Point{};
 }
 
 TriangleShape::Stray TriangleShape::stray_of(bool least) const {
@@ -83,7 +81,7 @@ std::array<double, 3> TriangleShape::stray(const Stray& of, const std::array<dou
     const auto& model = of.model;
     const double suu = model[0] + size[0] * ru_ + size[1] * rv_, suv = model[1] + size[1] * ru_ + size[2] * rv_, svv = model[2] + size[2] * ru_ + size[3] * rv_;
     // 2 |du dv| <= aspect du^2 + dv^2 / aspect makes the form diagonal, which adds up over the corners.
-    const double quu = suu + suv * aspect_, qvv = svv + suv / aspect_;
+    const double quu = suu + suv * aspect_[0], qvv = svv + suv * aspect_[1];
     std::array<double, 3> q;
     for (int k = 0; k < 3; ++k) q[k] = safe(quu * uu_[k] + qvv * vv_[k] + noise_[k]);
     return q;
@@ -152,7 +150,7 @@ TriangleBound TriangleShape::bound(Measure measure, bool least, bool turns, bool
 
     const double slack = triangle_.slack;
     result.unit = n_;
-    result.tilt = safe((8.1 * slack * (longest_ + slack) + 33 * 0x1p-53 * longest_ * longest_) / twice_area_ + 4 * 0x1p-53);
+    result.tilt = safe((8.1 * slack * (longest_ + slack) + 33 * 0x1p-53 * longest_ * longest_) * per_area_ + 6 * 0x1p-53);
     if (turns && !least) result.turn = turn_of(n_, x_, b_, q, side_, slack, result.worst_turn);
     const std::array<double, 3> qn = stray_along(of, n_), bn = along_normal();
     result.worst_edge = choose_edge({std::fabs(bn[0]) + qn[0], std::fabs(bn[1]) + qn[1], std::fabs(bn[2]) + qn[2]});
@@ -160,7 +158,7 @@ TriangleBound TriangleShape::bound(Measure measure, bool least, bool turns, bool
     bool quiet = result.tilt <= 1e-3;
     for (int k = 0; k < 3; ++k) {
         const EdgeBend edge = on_edge(of, k);
-        const Point inward = cross(n_, x_[k]) / side_[k];  // in the plane
+        const Point inward = (1 / side_[k]) * cross(n_, x_[k]);  // in the plane
         const double any = safe(edge.largest());
         across[k] = safe(edge.along(inward) + 2 * result.tilt * any);
         lens[k] = safe(across[k] + 0.32 * (edge.along(n_) + result.tilt * any)) * side_[k] / (2 * side_[k] - any);
@@ -176,7 +174,7 @@ TriangleBound TriangleShape::bound(Measure measure, bool least, bool turns, bool
     const double rounding = noise() + result.tilt * result.parametric;
     result.normal = safe(std::min(0.5 * largest_form(bn, qn), cubic.largest(off)) + rounding);
     for (int k = 0; k < 3; ++k) {
-        const double wide = safe(1.06 * result.parametric * side_[k] / twice_area_);  // see Lemma 6
+        const double wide = safe(1.06 * result.parametric * side_[k] * per_area_);  // see Lemma 6
         result.beside[k] = std::min(result.normal, safe(cubic.beside(k, off, wide) + rounding));
         result.across[k] = safe(across[k] / 8);
     }

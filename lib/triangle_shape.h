@@ -35,10 +35,10 @@ private:
 
     const SecondDerivatives& s_;
     const CornerData& triangle_;
-    double mu_, mv_, ru_, rv_, aspect_;  // middle and half-widths of the triangle's box
+    double mu_, mv_, ru_, rv_, aspect_[2];  // rv_ / ru_ and ru_ / rv_; middle and half-widths of the triangle's box
     std::array<Point, 3> b_, x_;         // H(m)[e,e], and the mesh's edges
     std::array<double, 3> uu_, uv_, vv_, noise_, side_;  // noise: what rounding in H[e,e] is relative to
-    double twice_area_, longest_;
+    double twice_area_, per_area_, longest_;  // per_area_: its reciprocal
     bool flat_;  // else too thin, or too small, to have a normal
     Point n_;
 };

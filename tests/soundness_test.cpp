@@ -8,6 +8,8 @@
 
 #include "bound_cell.h"
 #include "samples.h"
+#include "triangle_lanes.h"
+#include "triangle_shape.h"
 
 namespace isoparm::tests {
 namespace {
@@ -47,6 +49,8 @@ void look_at(const Patch& patch, const BoundCell& root, Random& random, const st
     const TriangleBound own = bound_triangle(patch, uv, data.points);
     const BoundCell* cell = &root;
     const TriangleBound b = BoundCell::bound(patch, cell, data, own.parametric * random.number(), Measure::geometric);
+    TriangleBound lanes = b;  // those of polynomial cells, as the refinement uses them
+    if (root.polynomial().exists()) root.bound_all(patch, {&data, 1}, own.parametric * random.number(), Measure::geometric, TriangleBound::unasked, false, &lanes);
     ++tally.triangles, tally.quiet += b.quiet, tally.unbounded += !std::isfinite(std::min(own.parametric, b.parametric));
     bool wrong = false, tight = false;
     const auto compare = [&](double seen, double bound) {
@@ -61,11 +65,17 @@ void look_at(const Patch& patch, const BoundCell& root, Random& random, const st
             Point flat;
             for (int k = 0; k < 3; ++k) q = {q.x + l[k] * uv[k].x, q.y + l[k] * uv[k].y}, flat += l[k] * data.points[k];
             const Point d = patch.point(q.x, q.y) - flat;
-            compare(length(d), own.parametric), compare(length(d), b.parametric);
-            if (!b.quiet) continue;
-            compare(std::fabs(dot(b.unit, d)), b.normal);
-            for (int k = 0; k < 3; ++k)
-                if (l[(k + 2) % 3] == 0) compare(std::fabs(dot(normalized(cross(b.unit, data.points[(k + 1) % 3] - data.points[k])), d)), b.across[k]);
+            compare(length(d), own.parametric);
+            for (const TriangleBound& of : {b, lanes}) {
+                compare(length(d), of.parametric);
+                if (!of.quiet) continue;
+                compare(std::fabs(dot(of.unit, d)), of.normal);
+                for (int k = 0; k < 3; ++k)
+                    if (l[(k + 2) % 3] == 0) {
+                        compare(std::fabs(dot(normalized(cross(of.unit, data.points[(k + 1) % 3] - data.points[k])), d)), of.across[k]);
+                        compare(std::fabs(dot(of.unit, d)), of.beside[k]);
+                    }
+            }
         }
     tally.violations += wrong, tally.within_one_percent += tight;
     if (wrong && tally.first.empty())
@@ -95,6 +105,52 @@ TEST(Soundness, NoBoundIsBelowWhatDenseSamplesShow) {
     // Were all bounds 1 % smaller, this test would fail this often.
     EXPECT_GT(all.within_one_percent, all.triangles / 200);
     std::printf("%zu triangles: %zu violations; %zu bounds would be violated if they were 1 %% smaller; %zu quiet, %zu without a bound\n", all.triangles, all.violations, all.within_one_percent, all.quiet, all.unbounded);
+}
+
+bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+bool same(const TriangleBound& a, const TriangleBound& b) {
+    bool all = same(a.parametric, b.parametric) && same(a.normal, b.normal) && same(a.tilt, b.tilt) && same(a.turn, b.turn) && a.quiet == b.quiet && a.unit == b.unit;
+    for (int k = 0; k < 3; ++k) all = all && same(a.beside[k], b.beside[k]) && same(a.across[k], b.across[k]);
+    return all && a.worst_edge == b.worst_edge && a.worst_turn == b.worst_turn && a.worst_across == b.worst_across;
+}
+
+/// So the proofs of the one are those of the other. On all instruction sets that run here, in every lane, whatever the others hold.
+TEST(Soundness, LanesGiveTheBitsOfOneTriangleAtATime) {
+    std::size_t compared = 0, quiet = 0;
+    for (const PatchType& type : patch_types())
+        for (std::uint64_t seed = 72000; seed < 72003; ++seed) {
+            Random random(seed);
+            const Patch patch = type.make(random).patch;
+            const Box box{{patch.lines_u()[0], patch.lines_u()[1]}, {patch.lines_v()[0], patch.lines_v()[1]}};
+            const PolynomialCell cell(patch, box);
+            if (!cell.exists()) continue;
+            for (int round = 0; round < 12; ++round) {
+                const int n = random.integer(1, TriangleLanes::size);
+                std::array<CornerData, TriangleLanes::size> data;
+                TriangleLanes lanes;
+                for (int i = 0; i < n; ++i) {
+                    data[i].uv = random_triangle(random, patch, box);
+                    if (random.integer(0, 20) == 0) data[i].uv[2] = data[i].uv[1];  // no area
+                    for (int k = 0; k < 3; ++k) data[i].points[k] = patch.point(data[i].uv[k].x, data[i].uv[k].y);
+                    data[i].slack = 1e-13 * random.number();
+                    lanes.set(i, data[i]);
+                }
+                const LanesAsked asked{random.integer(0, 3) == 0 ? Measure::parametric : Measure::geometric, random.integer(0, 1) == 0 ? 1 : 3, random.integer(0, 2) == 0, random.integer(0, 1) == 0};
+                for (const Isa isa : all_isas) {
+                    if (!runs(isa)) continue;
+                    std::array<TriangleBound, TriangleLanes::size> bounds;
+                    bound_lanes(isa, cell, lanes, n, asked, bounds.data());
+                    for (int i = 0; i < n; ++i) {
+                        const SecondDerivatives model = asked.parts > 1 ? cell(box_of(data[i].uv), asked.parts) : cell(box_of(data[i].uv));
+                        const TriangleBound one = model.bounded ? TriangleShape(model, data[i]).bound(asked.measure, asked.least, asked.turns, true) : TriangleBound{};
+                        EXPECT_TRUE(same(bounds[i], one)) << type.name << ", " << to_text(isa) << ", seed " << seed << ", lane " << i;
+                        ++compared, quiet += one.quiet;
+                    }
+                }
+            }
+        }
+    EXPECT_GT(compared, 1000u);
+    EXPECT_GT(quiet, compared / 4);
 }
 
 double at_most(const Vec3<Interval>& x) { return rounding::length_up(mag(x.x), mag(x.y), mag(x.z)); }

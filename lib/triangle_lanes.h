@@ -1,0 +1,38 @@
+// triangle_lanes.h -- the bounds of eight triangles of one polynomial cell at once; internal to bound_cell.cpp and refine.cpp.
+//
+// The loops exist once in the source (triangle_lanes_kernel.h) and once for each instruction set in the binary; which one runs is chosen at run
+// time (batch.h). All give the bits of bound_triangle() with the cell's own SecondDerivatives over the triangle's box.
+#pragma once
+#include "batch.h"
+#include "bound.h"
+#include "second_derivatives.h"
+
+namespace isoparm {
+
+/// Corners, the mesh's points there and slack of eight triangles, by lanes; lanes beyond those asked for must hold numbers.
+struct TriangleLanes {
+    static constexpr int size = 8;
+    alignas(64) double u[3][size]{}, v[3][size]{}, x[3][3][size]{}, slack[size]{};
+
+    void set(int lane, const CornerData& triangle) {
+        for (int k = 0; k < 3; ++k) {
+            u[k][lane] = triangle.uv[k].x, v[k][lane] = triangle.uv[k].y;
+            x[k][0][lane] = triangle.points[k].x, x[k][1][lane] = triangle.points[k].y, x[k][2][lane] = triangle.points[k].z;
+        }
+        slack[lane] = triangle.slack;
+    }
+};
+
+struct LanesAsked {
+    Measure measure = Measure::geometric;
+    int parts = 1;       // third derivatives are enclosed over parts x parts pieces of the box
+    bool least = false;  // what no finer cell could go below, as for bound_triangle()
+    bool turns = false;  // turn as well
+};
+
+/// The first n triangles. Thread-safe.
+void bound_lanes(const PolynomialCell& cell, const TriangleLanes& triangles, int n, const LanesAsked& asked, TriangleBound* bounds);
+/// With the loops of one instruction set, which must run here.
+void bound_lanes(Isa isa, const PolynomialCell& cell, const TriangleLanes& triangles, int n, const LanesAsked& asked, TriangleBound* bounds);
+
+}  // namespace isoparm
