@@ -67,6 +67,15 @@ void add_bar(const ColorScale& s, double x, double height, double letter, Drawin
 
 }  // namespace
 
+std::vector<ColorScale> scales_of(const std::vector<Thing>& things) {
+    std::vector<ColorScale> list;
+    for (const Thing& t : things) {
+        const auto same = [&](const ColorScale& s) { return s.by.what == t.scale.by.what && s.low == t.scale.low && s.high == t.scale.high; };
+        if (t.scale.by.legend && std::none_of(list.begin(), list.end(), same)) list.push_back(t.scale);
+    }
+    return list;
+}
+
 double legend_width(double letter) { return 5.2 * letter; }
 
 LegendRoom legend_room(const std::vector<SceneObject>& objects, double letter, int width) {

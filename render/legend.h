@@ -2,9 +2,12 @@
 #pragma once
 #include "curvature_map.h"
 #include "drawing.h"
+#include "traced_scene.h"
 
 namespace isoparm {
 
+/// Of the legends that are wanted, each once.
+std::vector<ColorScale> scales_of(const std::vector<Thing>& things);
 /// Bars beside each other at the right of a picture width x height, the first outermost; pixels. `letter`: size of letters.
 Drawing legends(const std::vector<ColorScale>& scales, int width, int height, double letter);
 /// What one of them takes off the width.

@@ -23,16 +23,6 @@ constexpr int kOnTheSpot = 8;
 
 using Kind = SceneObject::Kind;
 
-/// Of the legends that are wanted, each once.
-std::vector<ColorScale> scales_of(const TracedScene& traced) {
-    std::vector<ColorScale> list;
-    for (const Thing& t : traced.things) {
-        const auto same = [&](const ColorScale& s) { return s.by.what == t.scale.by.what && s.low == t.scale.low && s.high == t.scale.high; };
-        if (t.scale.by.legend && std::none_of(list.begin(), list.end(), same)) list.push_back(t.scale);
-    }
-    return list;
-}
-
 class Overlay {
 public:
     Overlay(const Scene& scene, const TracedScene& traced, const Camera& camera, double pixel, double letter, bool isolines, const OverlayPlace& place)
@@ -44,7 +34,7 @@ public:
           letter_(letter),
           isolines_(isolines),
           place_(place),
-          scales_(scales_of(traced)) {
+          scales_(scales_of(traced.things)) {
         if (!(size_ > 0)) size_ = 1;
     }
 

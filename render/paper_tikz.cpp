@@ -35,12 +35,15 @@ private:
     std::string at(const Vec2& p) const { return "(" + decimal(p.x / figure_.pixels_per_point) + "," + decimal(p.y / figure_.pixels_per_point) + ")"; }
     static std::string opacity(const DrawingItem& item) { return item.opacity < 1 ? ",opacity=" + decimal(item.opacity) : ""; }
 
+    /// A rectangle, to the right first or downward first.
+    std::string corners(double x, double y, double w, double h, bool right) const {
+        return at({x, y}) + " -- " + at(right ? Vec2{x + w, y} : Vec2{x, y + h}) + " -- " + at({x + w, y + h}) + " -- " + at(right ? Vec2{x, y + h} : Vec2{x + w, y}) + " -- cycle";
+    }
     void add(const DrawnPart& part) {
         if (part.drawing.empty()) return;
-        out_ += "\\begin{scope}[shift={" + at({double(part.x), double(part.y)}) + "}]\n\\clip[overlay] (0,0) rectangle " + at({double(part.width), double(part.height)});
+        out_ += "\\begin{scope}[shift={" + at({double(part.x), double(part.y)}) + "}]\n\\clip " + corners(0, 0, part.width, part.height, true);
         // The other way round: not seen there.
-        for (const auto& [x, y, w, h] : part.holes)
-            out_ += " " + at({double(x), double(y)}) + " -- " + at({double(x), double(y + h)}) + " -- " + at({double(x + w), double(y + h)}) + " -- " + at({double(x + w), double(y)}) + " -- cycle";
+        for (const auto& [x, y, w, h] : part.holes) out_ += " " + corners(x, y, w, h, false);
         out_ += ";\n";
         for (const DrawingItem& item : part.drawing)
             std::visit([&](const auto& shape) { add(shape, item); }, item.shape);

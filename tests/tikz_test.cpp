@@ -66,7 +66,7 @@ TEST(Tikz, IsSetByTexAsThePdfHasIt) {
     const Printed p(R"json({ "isoparm": 1, "surfaces": { "s": { "type": "bilinear", "points": [[[-1,-1,0],[-1,1,0]],[[1,-1,0],[1,1,0.8]]] } },
         "panels": [ { "title": "100% of $P_1 \\oplus P_2$", "objects": [ { "surface": "s", "color_by": "gaussian", "isolines": { "u": 5, "v": 5 }, "outline": { "dash": [4, 3] } },
                       { "arrow": { "surface": "s", "at": [0.5, 0.5], "along": "normal" }, "label": "n" }, { "point": [1,1,0.8], "dot": 6, "label": { "text": "P_{11}", "leader": true } } ],
-                    "insets": [ { "around": [1,1,0.8], "place": "above left" } ] } ], "image": { "width": 600, "height": 450, "samples": 1 } })json");
+                    "insets": [ { "around": [1,1,0.8], "place": "above left" }, { "camera": { "eye": [0,0,5], "target": [0,9,0], "fov": 5 }, "place": "center", "size": 0.3 } ] } ], "image": { "width": 600, "height": 450, "samples": 1 } })json");
     const std::string name = "50% #1_a b";
     ASSERT_EQ(p.refused("--quiet --threads 1 --width 50mm -o '" + name + ".tex'").code, 0);
     p.file("b.pdf", "--width 50mm");
@@ -77,6 +77,14 @@ TEST(Tikz, IsSetByTexAsThePdfHasIt) {
     const Page set = page_of(p.folder, "a.pdf"), ours = page_of(p.folder, "b.pdf");
     Page turned = ours;
     std::reverse(turned.bytes.begin(), turned.bytes.end());
+    const auto middle = [](const Page& page) {  // of the empty inset that lies over all lines, all but its frame
+        double dark = 0;
+        for (int y = page.height * 35 / 100; y < page.height * 55 / 100; ++y)
+            for (int x = page.width * 2 / 5; x < page.width * 3 / 5; ++x) dark += 255 - static_cast<unsigned char>(page.bytes.at(static_cast<std::size_t>(3 * (page.width * y + x))));
+        return dark;
+    };
+    EXPECT_EQ(middle(ours), 0);
+    EXPECT_EQ(middle(set), 0) << "what is under a frame is not seen";
     EXPECT_LT(difference(set, ours), 4) << "only the letters are of another font";
     EXPECT_GT(difference(set, turned), 15) << "which is much less than between other pictures";
 }
