@@ -72,7 +72,7 @@ private:
         if (visible(tip)) arrow(tip, along);
         const auto ticks = axis.ticks ? *axis.ticks : round_ticks(axis.low, axis.high, kApart * letter_ * unit);
         for (const double t : ticks) tick(k, t, out);
-        numbers(k, ticks, out, unit);
+        numbers(k, axis, ticks, out, unit);
         if (!axis.name.empty() && visible(tip))
             text(axis.name, letter_, camera_.project(tip) - (0.3 * kArrow * pixel_) * along, out,
                  kGap * letter_ + kArrowHalf * pixel_, tip);
@@ -115,19 +115,24 @@ private:
         drawing_.push_back(
             {Polyline{{q, q + (kTick * pixel_) * out}, 0.8 * o_.line.width * pixel_, {}, false}, color_, opacity(p)});
     }
-    void numbers(int k, const std::vector<double>& ticks, const Vec2& out, double unit) {
+    void numbers(int k, const Axes::Axis& axis, const std::vector<double>& ticks, const Vec2& out, double unit) {
         const int digits = digits_of(ticks);
         const auto [crossed, same, first] = others(k);
-        for (const double t : ticks) {
+        for (std::size_t i = 0; i < ticks.size(); ++i) {
+            const double t = ticks[i];
+            const bool named = i < axis.tick_texts.size() && !axis.tick_texts[i].empty();
+            const MathText mark = named ? axis.tick_texts[i] : number_text(t, digits);
             const Point p = at(k, t);
             if (!visible(p)) continue;
             const Vec2 q = camera_.project(p);
             const bool crossing = crossed && std::fabs(t - axes_.origin[k]) < 0.5 * kNumber * letter_ * unit;
-            if (crossing && same) {  // the number of all axes: once, between them
+            if (crossing && same && !named) {  // the number of all axes: once, between them
                 if (first)
-                    text(number_text(t, digits), kNumber * letter_, q, diagonal(k, out), 0.7 * kGap * letter_, p);
+                    text(mark, kNumber * letter_, q, diagonal(k, out), 0.7 * kGap * letter_, p);
+            } else if (crossing && named && !at_its_end(k)) {
+                text(mark, kNumber * letter_, q, diagonal(k, out), 0.7 * kGap * letter_, p);
             } else if (!crossing || at_its_end(k)) {
-                text(number_text(t, digits), kNumber * letter_, q + (kTick * pixel_) * out, out, kGap * letter_, p);
+                text(mark, kNumber * letter_, q + (kTick * pixel_) * out, out, kGap * letter_, p);
             }
         }
     }

@@ -81,14 +81,23 @@ void fit_perspective(Camera& c, const std::vector<Point>& drawn, const Vec2& inn
 
 Ray Camera::ray(double x, double y) const {
     const double scale = 2 * half_height / height;
-    const Point aside = (scale * (x - 0.5 * width)) * right - (scale * (y - 0.5 * height)) * up;
+    const Point aside = (scale * (x - shift.x - 0.5 * width)) * right - (scale * (y - shift.y - 0.5 * height)) * up;
     if (orthographic) return {eye + aside, forward};
     return {eye, normalized(forward + aside)};
 }
 
 Vec2 Camera::project(const Point& p) const {
     const double pixel = pixel_size(depth(p));
-    return {0.5 * width + dot(p - eye, right) / pixel, 0.5 * height - dot(p - eye, up) / pixel};
+    return {0.5 * width + shift.x + dot(p - eye, right) / pixel, 0.5 * height + shift.y - dot(p - eye, up) / pixel};
+}
+
+Camera zoomed(Camera c, double x, double y, double width, int across, int down) {
+    const double scale = across / width;
+    c.shift = {(0.5 * c.width + c.shift.x - x) * scale - 0.5 * across, (0.5 * c.height + c.shift.y - y) * scale - 0.5 * down};
+    c.half_height *= down / (scale * c.height);
+    c.width = across;
+    c.height = down;
+    return c;
 }
 
 Camera make_camera(const CameraSettings& settings, const std::vector<Point>& drawn, int width, int height, const Vec2& room) {
@@ -147,8 +156,9 @@ double finest_pixel(const Camera& camera, const Bounds& box) {
                                             corner & 4 ? box.high.z : box.low.z}));
     const double size = camera.pixel_size(std::max(nearest, 1e-3 * box.diagonal()));  // the eye may be inside the box
     // Toward the corners of a perspective picture, moving along the view moves the projection as well: by the secant of the angle to the axis in all.
-    const double aspect = static_cast<double>(camera.width) / camera.height;
-    return camera.orthographic ? size : size / std::sqrt(1 + camera.half_height * camera.half_height * (1 + aspect * aspect));
+    const double pixel = 2 * camera.half_height / camera.height;
+    const double x = pixel * (0.5 * camera.width + std::fabs(camera.shift.x)), y = pixel * (0.5 * camera.height + std::fabs(camera.shift.y));
+    return camera.orthographic ? size : size / std::sqrt(1 + x * x + y * y);
 }
 
 }  // namespace isoparm

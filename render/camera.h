@@ -20,6 +20,7 @@ struct Camera {
     bool orthographic = false;
     double half_height = 1;  // of the view: scene units (orthographic), or at depth 1 (perspective)
     int width = 1, height = 1;
+    Vec2 shift{};            // pixels from the middle of the picture to where the view direction meets it: of parts of larger pictures
 
     Ray ray(double x, double y) const;
     /// Pixel coordinates of a point in front of the camera.
@@ -28,6 +29,9 @@ struct Camera {
     /// Size of one pixel at a depth, in scene units.
     double pixel_size(double depth) const { return 2 * half_height / height * (orthographic ? 1 : depth); }
 };
+
+/// The camera of a part of a camera's picture, at (x,y) and width x height of its pixels, which then fills `across` x `down` pixels.
+Camera zoomed(Camera camera, double x, double y, double width, int across, int down);
 
 /// The camera that the settings describe. What they leave open is chosen for `drawn`, points of everything that is
 /// drawn (its convex hull, or about): a three-quarter view from the front, right and above with z up, everything inside

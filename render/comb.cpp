@@ -4,9 +4,7 @@
 #include <cmath>
 
 namespace isoparm {
-namespace {
 
-/// Curvature times the direction to its centre; zero where the curve stands still.
 Point curvature_vector(const Curve& curve, double t) {
     Point x[3];
     curve.taylor(t, 2, x);
@@ -15,6 +13,8 @@ Point curvature_vector(const Curve& curve, double t) {
     const Point k = (dd - (dot(dd, d) / speed) * d) / speed;
     return finite(k) ? k : Point();
 }
+
+namespace {
 
 std::vector<double> parameters(const Curve& curve, int teeth) {
     std::vector<double> list;

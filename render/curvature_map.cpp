@@ -68,6 +68,22 @@ double curvature_of(const Patch& patch, const Vec2& at, ColorBy::What what, bool
     }
 }
 
+/// The diagonal of a box about samples of the patches; 1 when they are a point.
+double size_of(const Composite& patches) {
+    Bounds all{patches.front().patch.point(patches.front().patch.rect().u0, patches.front().patch.rect().v0), {}};
+    all.high = all.low;
+    for (const Member& m : patches) {
+        const Rect r = m.patch.rect();
+        for (int i = 0; i <= 4; ++i)
+            for (int j = 0; j <= (m.patch.domain() == Domain::quad ? 4 : 4 - i); ++j) {
+                const Point p = m.patch.point(r.u0 + (r.u1 - r.u0) * i / 4, r.v0 + (r.v1 - r.v0) * j / 4);
+                if (finite(p)) all = united(all, {p, p});
+            }
+    }
+    const double size = all.diagonal();
+    return size > 0 && std::isfinite(size) ? size : 1;
+}
+
 ColorScale settled(const ColorBy& by, const Composite& patches, const std::vector<char>& flipped) {
     ColorScale scale;
     scale.by = by;
@@ -78,8 +94,8 @@ ColorScale settled(const ColorBy& by, const Composite& patches, const std::vecto
     } else if (!values.empty()) {
         const std::size_t tail = values.size() / 50;
         const double low = values[tail], high = values[values.size() - 1 - tail], most = std::max(std::fabs(low), std::fabs(high));
-        // What is flat but for rounding gets no colours of its own.
-        const double top = most > 1e-12 ? rounded_up(most) : 1;
+        // What is flat but for rounding, for its size, gets no colours of its own.
+        const double size = size_of(patches), top = most * size > 1e-9 && size > 0 ? rounded_up(most) : by.what == ColorBy::What::gaussian ? 1 / (size * size) : 1 / size;
         const bool about_zero = by.what == ColorBy::What::gaussian || by.what == ColorBy::What::mean || (low < 0 && high > 0);
         scale.low = about_zero || high <= 0 ? -top : 0, scale.high = about_zero || high > 0 ? top : 0;
     }

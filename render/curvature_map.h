@@ -18,7 +18,7 @@ double rounded_up(double x);
 /// ColorBy with its range settled.
 struct ColorScale {
     ColorBy by;
-    std::string name;                   // in a legend; empty: that of `by`
+    std::string name, unit{};           // in a legend; empty: that of `by`, and none
     double low = 0, high = 1;           // low < high
     bool below = false, above = false;  // samples lie beyond
     /// Diverging about 0 when 0 is inside, both sides to the same scale; otherwise viridis from low to high.

@@ -3,6 +3,7 @@
 //
 // Pixels of the picture: x to the right, y down, (0,0) the corner of the top left pixel. Colours are linear.
 #pragma once
+#include <array>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -45,6 +46,7 @@ inline double halo_opacity(double of_text) { return 0.85 * of_text * of_text; }
 struct DrawnPart {
     Drawing drawing;
     int x = 0, y = 0, width = 0, height = 0;
+    std::vector<std::array<int, 4>> holes{};  // x, y, width, height of its own pixels, where it is not seen
 };
 
 }  // namespace isoparm

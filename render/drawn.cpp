@@ -83,6 +83,9 @@ std::vector<Point> drawn_points(const Scene& scene, const std::vector<SceneObjec
                 break;
             case SceneObject::Kind::axes:
                 for (const Point& p : ends_of(o.axes)) points.push_back(p);
+                break;
+            case SceneObject::Kind::arrow:
+                points.insert(points.end(), {o.arrow.tail, o.arrow.tip});
         }
     }
     std::erase_if(points, [](const Point& p) { return !finite(p); });

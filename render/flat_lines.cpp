@@ -181,17 +181,6 @@ void add_line(const std::vector<Point>& points, const LineLook& look, const Sigh
     }
 }
 
-void add_arrow(const std::vector<Point>& points, const LineLook& look, const Camera& camera, const Sight& sight, Drawing& drawing) {
-    add_line(points, look, sight, 0, drawing);
-    if (points.size() < 2) return;
-    const Vec2 a = camera.project(points.front()), b = camera.project(points.back());
-    const double run = apart(a, b), half = 1.7 * look.width, head = std::min(5 * look.width, 0.6 * run);
-    if (!(run > 0)) return;
-    const Vec2 d{(b.x - a.x) / run, (b.y - a.y) / run}, base{b.x - head * d.x, b.y - head * d.y}, end{b.x + look.width * d.x, b.y + look.width * d.y};
-    const double opacity = look.opacity * opacity_of(look.hidden, sight.of(points.back()));
-    drawing.push_back({Filled{{end, {base.x - half * d.y, base.y + half * d.x}, {base.x + half * d.y, base.y - half * d.x}}}, look.color, opacity});
-}
-
 void join_lines(Drawing& drawing, std::size_t first) {
     Drawing joined(drawing.begin(), drawing.begin() + static_cast<std::ptrdiff_t>(std::min(first, drawing.size())));
     for (std::size_t i = first; i < drawing.size(); ++i) {

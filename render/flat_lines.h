@@ -29,8 +29,6 @@ std::vector<double> fine_parameters(const std::function<Point(double)>& curve, d
 /// `clear` as for Sight. `fade`: for each point, a further factor of its opacity; empty: 1.
 void add_line(const std::vector<Point>& points, const LineLook& look, const Sight& sight, double clear,
               Drawing& drawing, const std::vector<double>& fade = {});
-/// The line with a head at its last point; a short one is head only.
-void add_arrow(const std::vector<Point>& points, const LineLook& look, const Camera& camera, const Sight& sight, Drawing& drawing);
 /// Lines that look alike, from item `first` on, become one.
 void join_lines(Drawing& drawing, std::size_t first);
 

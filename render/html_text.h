@@ -4,7 +4,7 @@
 
 namespace isoparm {
 
-/// As text or in a quoted attribute.
+/// As text or in a quoted attribute. Control characters, which XML has no place for, become spaces.
 inline std::string escaped(const std::string& text) {
     std::string r;
     for (const char c : text) {
@@ -17,7 +17,7 @@ inline std::string escaped(const std::string& text) {
         else if (c == '"')
             r += "&quot;";
         else
-            r += c;
+            r += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
     }
     return r;
 }

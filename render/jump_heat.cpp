@@ -77,14 +77,17 @@ std::vector<HotEdge> hot_edges(const Composite& surface, JumpHeat::Of of, double
     return edges;
 }
 
-ColorScale scale_of(const JumpHeat& heat, const std::vector<HotEdge>& edges) {
+ColorScale scale_of(const JumpHeat& heat, const std::vector<HotEdge>& edges, double size) {
     const bool angle = heat.of == JumpHeat::Of::g1;
-    double most = angle ? 1e-6 : 1e-9;  // below that it is rounding, for the eye
+    const double unit = angle ? 1 : 1 / size, rounding = 1e-6 * unit;
+    double most = rounding;
     for (const HotEdge& e : edges)
         for (const double x : e.jumps)
             if (x > most && std::isfinite(x)) most = x;
     ColorScale scale;
-    scale.name = angle ? "jump of the normal, degrees $" : "jump of the curvature across $";
+    if (!(most > rounding)) most = unit;
+    scale.name = angle ? "jump of the normal" : "jump of the curvature across";
+    scale.unit = angle ? "degrees" : "";
     scale.by.legend = heat.legend;
     scale.high = heat.top ? *heat.top : rounded_up(most);
     scale.above = most > scale.high * (1 + 1e-9);

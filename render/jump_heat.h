@@ -12,6 +12,7 @@ struct HotEdge {
 };
 /// Of every shared edge, seam and line between cells (continuity.h). `size`: the diagonal of the scene's box.
 std::vector<HotEdge> hot_edges(const Composite& surface, JumpHeat::Of of, double size);
-ColorScale scale_of(const JumpHeat& heat, const std::vector<HotEdge>& edges);
+/// From 0 to the largest jump. What is no more than rounding, in degrees or for the scene's size, does not count: then to 1 degree, or 1 / size.
+ColorScale scale_of(const JumpHeat& heat, const std::vector<HotEdge>& edges, double size);
 
 }  // namespace isoparm

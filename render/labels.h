@@ -27,8 +27,12 @@ struct LabelRequest {
     Color color;
 };
 
-/// Places one label after the other, each where it costs least among the eight sides of its anchors and three
-/// distances. The outcome depends on nothing but the arguments. Texts go to the end of the drawing.
+/// From a label's box toward its anchor, which has a gap around it: two points, or none where there is no room.
+std::vector<Vec2> leader_of(double left, double top, double right, double bottom, const Anchor& anchor, double size);
+
+/// Places one label after the other, each where it costs least among the eight sides of its anchors and some distances. One that
+/// has to stand far off gets a leader: a thin line to what it names. The outcome depends on nothing but the arguments. Texts go to
+/// the end of the drawing, each behind its leader.
 void place_labels(const std::vector<LabelRequest>& requests, const std::vector<Obstacle>& obstacles, int width,
                   int height, Drawing& drawing);
 

@@ -5,6 +5,7 @@
 #include <deque>
 #include <numbers>
 
+#include "arrows.h"
 #include "axes.h"
 #include "comb.h"
 #include "drawn.h"
@@ -21,24 +22,12 @@ namespace isoparm {
 namespace {
 
 constexpr int kOnTheSpot = 8;
-constexpr double kLetters = 0.036;      // of the picture's height, or of three quarters of its width,
-constexpr double kMostLetters = 0.055;  // and of its panel's
 
 using Kind = SceneObject::Kind;
 
-/// Of the legends that are wanted, each once.
-std::vector<ColorScale> scales_of(const TracedScene& traced) {
-    std::vector<ColorScale> list;
-    for (const Thing& t : traced.things) {
-        const auto same = [&](const ColorScale& s) { return s.by.what == t.scale.by.what && s.low == t.scale.low && s.high == t.scale.high; };
-        if (t.scale.by.legend && std::none_of(list.begin(), list.end(), same)) list.push_back(t.scale);
-    }
-    return list;
-}
-
 class Overlay {
 public:
-    Overlay(const Scene& scene, const TracedScene& traced, const Camera& camera, double pixel, double letter, bool isolines)
+    Overlay(const Scene& scene, const TracedScene& traced, const Camera& camera, double pixel, double letter, bool isolines, const OverlayPlace& place)
         : scene_(scene),
           camera_(camera),
           sight_(traced, camera),
@@ -46,7 +35,8 @@ public:
           size_(bounding_box(scene).diagonal()),
           letter_(letter),
           isolines_(isolines),
-          scales_(scales_of(traced)) {
+          place_(place),
+          scales_(scales_of(traced.things)) {
         if (!(size_ > 0)) size_ = 1;
     }
 
@@ -55,10 +45,14 @@ public:
         for (const SceneObject& o : objects)
             if (o.kind == Kind::surface) add_surface_lines(o);
         for (const SceneObject& o : objects) add(o);
+        for (const auto& [x, y, width, height] : place_.covered) avoid_box(x, y, width, height);
         for (const SceneObject& o : objects) add_labels(o);
         place_labels(requests_, obstacles_, camera_.width, camera_.height, drawing_);
-        const Drawing bars = legends(scales_, camera_.width + legend_room(objects, letter_, 2 * camera_.width), camera_.height, letter_);
-        drawing_.insert(drawing_.end(), bars.begin(), bars.end());
+        if (!place_.inset) {
+            const LegendRoom room = legend_room(objects, letter_, 2 * camera_.width);
+            const Drawing bars = legends(scales_, camera_.width + room.width, camera_.height, room.letter);
+            drawing_.insert(drawing_.end(), bars.begin(), bars.end());
+        }
         return std::move(drawing_);
     }
 
@@ -91,6 +85,10 @@ private:
             case Kind::axes:
                 add_axes(o, o.color.value_or(ink_color()), sight_, pixel_,
                          o.label.size ? *o.label.size * pixel_ : letter_, obstacles_, drawing_);
+                return;
+            case Kind::arrow:
+                add_arrow(o.arrow, {o.color.value_or(ink_color()), o.opacity, o.line.width * pixel_, scaled(o.line.dash), o.line.hidden}, sight_, drawing_);
+                avoid(points_between(o.arrow.tail, o.arrow.tip), 0);
         }
     }
     void add_surface_lines(const SceneObject& o) {
@@ -115,7 +113,7 @@ private:
     void add_jumps(const SceneObject& o) {
         if (o.jumps.of == JumpHeat::Of::none) return;
         const auto edges = hot_edges(surface_of(scene_, o).patches, o.jumps.of, size_);
-        const ColorScale scale = scale_of(o.jumps, edges);
+        const ColorScale scale = scale_of(o.jumps, edges, size_);
         for (const HotEdge& e : edges)
             for (std::size_t k = 0; k + 1 < e.points.size(); ++k) {
                 const double jump = std::max(e.jumps[k], e.jumps[k + 1]);
@@ -128,7 +126,7 @@ private:
         const Surface& surface = surface_of(scene_, o);
         for (const TwistArrow& t : twist_arrows(surface, o.twists, size_)) {
             for (const auto& [tip, which] : {std::pair(t.tip_f, 0), {t.tip_g, 1}}) {
-                add_arrow(points_between(t.foot, tip), {twist_color(which), 1, o.twists.width * pixel_, {}, Hidden::ghost}, camera_, sight_, drawing_);
+                add_arrow({t.foot, tip}, {twist_color(which), 1, o.twists.width * pixel_, {}, Hidden::ghost}, sight_, drawing_);
                 avoid(points_between(t.foot, tip), 0);
             }
             Label& label = labels_.emplace_back();
@@ -191,6 +189,12 @@ private:
         }
     }
 
+    void avoid_box(double x, double y, double width, double height) {
+        const double step = 0.4 * letter_;
+        for (double left = x; left <= x + width; left += step)
+            for (double top = y; top <= y + height; top += step) obstacles_.push_back({{left, top}, step});
+    }
+
     // ---- labels ---------------------------------------------------------------------------------------------------
     void add_labels(const SceneObject& o) {
         for (std::size_t i = 0; i < o.net_labels.size(); ++i)
@@ -204,10 +208,14 @@ private:
                        label.size ? *label.size * pixel_ : letter_,
                        label.color.value_or(ink_color())};
         for (const Anchor& a : anchors)
-            if (std::isfinite(a.at.x + a.at.y) && !(a.seen == 0 && label.hidden == Hidden::hide))
+            if (std::isfinite(a.at.x + a.at.y) && !(a.seen == 0 && label.hidden == Hidden::hide) && (!place_.inset || inside(a.at)) && !covered(a.at))
                 r.anchors.push_back(a);
         requests_.push_back(std::move(r));
     }
+    bool covered(const Vec2& p) const {
+        return std::any_of(place_.covered.begin(), place_.covered.end(), [&](const auto& b) { return p.x >= b[0] && p.x <= b[0] + b[2] && p.y >= b[1] && p.y <= b[1] + b[3]; });
+    }
+    bool inside(const Vec2& p) const { return p.x >= 0 && p.y >= 0 && p.x <= camera_.width && p.y <= camera_.height; }
     std::vector<Anchor> anchors_of(const SceneObject& o) const {
         switch (o.kind) {
             case Kind::surface:
@@ -218,6 +226,8 @@ private:
                 return {anchor(o.net.points[o.net.points.size() / 2], kNetBall * radius_of(o, size_))};
             case Kind::point:
                 return {anchor(o.point, radius_of_point(o))};
+            case Kind::arrow:
+                return {anchor_beyond(o.arrow)};
             case Kind::axes:
                 break;
         }
@@ -256,6 +266,14 @@ private:
         }
         return anchors;
     }
+    /// The tip of an arrow, whose label stands rather ahead of it.
+    Anchor anchor_beyond(const Arrow& arrow) const {
+        Anchor a = anchor(arrow.tip, 0);
+        if (!(camera_.depth(arrow.tail) > 0)) return a;
+        const Vec2 tail = camera_.project(arrow.tail), along{a.at.x - tail.x, a.at.y - tail.y};
+        if (std::hypot(along.x, along.y) > 1) a.away = along;
+        return a;
+    }
     Anchor anchor(const Point& p, double radius) const {
         if (!(camera_.depth(p) > 0)) return {{NAN, NAN}, 0, {}, 0};
         const Vec2 at = camera_.project(p);
@@ -279,6 +297,7 @@ private:
     Sight sight_;
     double pixel_, size_, letter_;
     bool isolines_;
+    const OverlayPlace& place_;
     Vec2 middle_;
     std::vector<Obstacle> obstacles_;
     std::vector<LabelRequest> requests_;
@@ -290,29 +309,13 @@ private:
 }  // namespace
 
 Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced,
-                const Camera& camera, double pixel, double letter, bool isolines) {
+                const Camera& camera, double pixel, double letter, bool isolines, const OverlayPlace& place) {
     const auto vectors = [&](const SceneObject& o) {
         return o.line.width > 0 || o.outline.line.width > 0 || (isolines && o.isolines.u + o.isolines.v > 0) || !o.label.text.empty() || !o.net_labels.empty() || o.kind == Kind::axes ||
                o.color_by.legend || o.jumps.of != JumpHeat::Of::none || o.comb.teeth > 0 || o.twists.on;
     };
     if (std::none_of(objects.begin(), objects.end(), vectors)) return {};
-    return Overlay(scene, traced, camera, pixel, letter, isolines).run(objects);
-}
-
-double letter_size(int picture_width, int picture_height, int width, int height) {
-    const auto size = [](int w, int h) { return std::min(double(h), 0.75 * w); };
-    return std::min(kLetters * size(picture_width, picture_height), kMostLetters * size(width, height));
-}
-
-Camera camera_of(const View& view) {
-    Vec2 room;
-    for (const SceneObject& o : view.objects) {
-        if (o.kind == Kind::axes)
-            room = {std::max(room.x, 2.4 * view.letter), std::max(room.y, 1.6 * view.letter)};
-        else if (!o.label.text.empty() || !o.net_labels.empty() || o.twists.on)
-            room = {std::max(room.x, 0.8 * view.letter), std::max(room.y, 0.5 * view.letter)};
-    }
-    return make_camera(view.camera, view.fitted, view.width - legend_room(view.objects, view.letter, view.width), view.height, room);
+    return Overlay(scene, traced, camera, pixel, letter, isolines, place).run(objects);
 }
 
 }  // namespace isoparm

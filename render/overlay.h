@@ -6,14 +6,15 @@
 
 namespace isoparm {
 
+/// What a drawing has over it.
+struct OverlayPlace {
+    bool inset = false;                         // no legends, and no labels of what is outside
+    std::vector<std::array<int, 4>> covered{};  // x, y, width, height: labels keep off
+};
+
 /// `pixel`: pixels of this picture to one of the scene's; `letter`: size of letters that say nothing else. The same for
 /// every number of threads. `isolines`: those of surfaces too, which the tracer otherwise paints.
 Drawing overlay(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced,
-                const Camera& camera, double pixel, double letter, bool isolines = false);
-
-/// The size of letters, in pixels, on a part width x height of a picture.
-double letter_size(int picture_width, int picture_height, int width, int height);
-/// The camera of a view: what it fits has room for labels and axes around it, and for legends at the right.
-Camera camera_of(const View& view);
+                const Camera& camera, double pixel, double letter, bool isolines = false, const OverlayPlace& place = {});
 
 }  // namespace isoparm

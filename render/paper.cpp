@@ -20,8 +20,20 @@ std::string extension_of(const std::string& path) {
     std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return std::tolower(c); });
     return e;
 }
+/// TeX takes no name with one of its special characters or spaces: these become their numbers, "50x25" of "50%".
 std::string raster_path(const std::string& path) {
-    return (fs::path(path).parent_path() / (fs::path(path).stem().string() + "-raster.png")).string();
+    std::string name;
+    for (const char c : fs::path(path).stem().string()) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (std::isalnum(byte) || byte >= 0x80 || c == '-' || c == '_' || c == '.' || c == '+') {
+            name += c;
+        } else {
+            char number[8];
+            std::snprintf(number, sizeof number, "x%02x", byte);
+            name += number;
+        }
+    }
+    return (fs::path(path).parent_path() / (name + "-raster.png")).string();
 }
 
 // ---- opacities ----------------------------------------------------------------------------------------------------

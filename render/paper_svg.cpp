@@ -84,7 +84,10 @@ std::string svg_text(const PaperFigure& figure) {
         const DrawnPart& part = figure.parts[i];
         if (part.drawing.empty()) continue;
         const int n = static_cast<int>(i);
-        out += formatted("<clipPath id=\"part%d\"><rect width=\"%d\" height=\"%d\"/></clipPath>\n", n, part.width, part.height);
+        std::string clip = formatted("M0 0H%dV%dH0Z", part.width, part.height);
+        for (const auto& [x, y, w, h] : part.holes) clip += formatted("M%d %dv%dh%dv%dZ", x, y, h, w, -h);  // the other way round
+        out += part.holes.empty() ? formatted("<clipPath id=\"part%d\"><rect width=\"%d\" height=\"%d\"/></clipPath>\n", n, part.width, part.height)
+                                  : formatted("<clipPath id=\"part%d\"><path d=\"", n) + clip + "\"/></clipPath>\n";
         out += formatted("<g transform=\"translate(%d,%d)\"><g clip-path=\"url(#part%d)\" font-family=\"%s\" xml:space=\"preserve\">\n", part.x, part.y, n, kFamilies);
         for (const DrawingItem& item : part.drawing)
             std::visit([&](const auto& shape) { add(shape, item, figure.outlines, out); }, item.shape);

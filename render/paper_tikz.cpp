@@ -35,9 +35,16 @@ private:
     std::string at(const Vec2& p) const { return "(" + decimal(p.x / figure_.pixels_per_point) + "," + decimal(p.y / figure_.pixels_per_point) + ")"; }
     static std::string opacity(const DrawingItem& item) { return item.opacity < 1 ? ",opacity=" + decimal(item.opacity) : ""; }
 
+    /// A rectangle, to the right first or downward first.
+    std::string corners(double x, double y, double w, double h, bool right) const {
+        return at({x, y}) + " -- " + at(right ? Vec2{x + w, y} : Vec2{x, y + h}) + " -- " + at({x + w, y + h}) + " -- " + at(right ? Vec2{x, y + h} : Vec2{x + w, y}) + " -- cycle";
+    }
     void add(const DrawnPart& part) {
         if (part.drawing.empty()) return;
-        out_ += "\\begin{scope}[shift={" + at({double(part.x), double(part.y)}) + "}]\n\\clip (0,0) rectangle " + at({double(part.width), double(part.height)}) + ";\n";
+        out_ += "\\begin{scope}[shift={" + at({double(part.x), double(part.y)}) + "}]\n\\clip " + corners(0, 0, part.width, part.height, true);
+        // The other way round: not seen there.
+        for (const auto& [x, y, w, h] : part.holes) out_ += " " + corners(x, y, w, h, false);
+        out_ += ";\n";
         for (const DrawingItem& item : part.drawing)
             std::visit([&](const auto& shape) { add(shape, item); }, item.shape);
         out_ += "\\end{scope}\n";
@@ -62,13 +69,17 @@ private:
         path(area.outline);
         out_ += " -- cycle;\n";
     }
-    /// Centred where isoparm's own letters would be: the document's may be wider.
+    /// Where isoparm's own letters would be.
     void add(const Text& text, const DrawingItem& item) {
         const TextBox box = text_box(text.text, text.size);
-        const double middle = 0.5 * (box.left + box.right);
+        // A label keeps the side that faces what it names: the document's letters may be wider.
+        const double left = text.at.x + box.left, right = text.at.x + box.right;
+        const bool beside = text.anchor && !text.turned;
+        const char* anchor = beside && left >= text.anchor->x ? "base west" : beside && right <= text.anchor->x ? "base east" : "base";
+        const double middle = anchor[4] == 0 ? 0.5 * (box.left + box.right) : anchor[5] == 'w' ? box.left : box.right;
         const Vec2 base = text.turned ? Vec2{text.at.x, text.at.y - middle} : Vec2{text.at.x + middle, text.at.y};
         const double points = text.size / figure_.pixels_per_point;
-        out_ += "\\node[inner sep=0pt,outer sep=0pt,anchor=base" + std::string(text.turned ? ",rotate=90" : "") + ",text=" + color_of(item.color) + opacity(item) + ",font=\\fontsize{" +
+        out_ += "\\node[inner sep=0pt,outer sep=0pt,anchor=" + std::string(anchor) + std::string(text.turned ? ",rotate=90" : "") + ",text=" + color_of(item.color) + opacity(item) + ",font=\\fontsize{" +
                 decimal(points, "%.2f") + "bp}{" + decimal(1.2 * points, "%.2f") + "bp}\\selectfont] at " + at(base) + " {" + tex_of(text.text) + "};\n";
     }
 

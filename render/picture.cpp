@@ -9,9 +9,10 @@
 
 #include "camera.h"
 #include "error.h"
+#include "insets.h"
+#include "layout.h"
 #include "overlay.h"
 #include "paint.h"
-#include "panels.h"
 #include "path_lighting.h"
 #include "sampler.h"
 #include "shade.h"
@@ -23,8 +24,7 @@ namespace {
 
 constexpr int kTile = 16;           // pixels a side
 constexpr double kMeshShare = 0.2;  // of the progress bar
-constexpr double kLeastPrinted = 6;  // points: smaller letters are hard to read on paper
-constexpr int kLargestSize = 1 << 16, kMostSamples = 1 << 16;
+constexpr int kMostSamples = 1 << 16;
 
 struct Rgba {
     Color color;  // premultiplied
@@ -188,13 +188,6 @@ void trace(const TracedScene& traced, double most_halved, const Tracer& tracer, 
     });
 }
 
-int checked_size(int size, const char* what, int most) {
-    if (size < 1 || size > most)
-        throw Error(ErrorKind::usage, std::string("the picture's ") + what + " is " + std::to_string(size) +
-                                          ", expected 1 to " + std::to_string(most));
-    return size;
-}
-
 Area checked_area(const RenderOptions& options, int width, int height) {
     if (!options.crop) return {0, 0, width, height};
     const auto& c = *options.crop;
@@ -263,6 +256,11 @@ void put_over(Drawing drawing, int x, int y, int width, int height, bool vectors
         paint(drawing, -x, -y, picture.image);
 }
 
+/// Does anything mirror or bend what is seen? Then parameter lines are traced, so that they are seen in it too.
+bool mirrors(const Scene& scene, const std::vector<SceneObject>& objects) {
+    return scene.lighting && std::any_of(objects.begin(), objects.end(), [](const SceneObject& o) { return o.material.kind == Material::Kind::metal || o.material.kind == Material::Kind::glass; });
+}
+
 /// The part `area` of a view, in the view's own pixels.
 Picture render_view(const Scene& scene, const View& view, const Area& area, const Quality& how,
                     const std::function<void(double)>& progress) {
@@ -275,7 +273,8 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     picture.tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
     auto start = std::chrono::steady_clock::now();
     TracedScene traced = build_traced_scene(scene, view.objects, picture.tolerance, part_of_progress(0, kMeshShare), how.exact, how.grid);
-    for (Thing& thing : traced.things) thing.isolines.width = how.vectors ? 0 : thing.isolines.width * how.pixel;
+    const bool lines = how.vectors && !mirrors(scene, view.objects);
+    for (Thing& thing : traced.things) thing.isolines.width = lines ? 0 : thing.isolines.width * how.pixel;
     picture.certified_error = traced.certified_error;
     picture.triangles = traced.triangles;
     for (const ExactPatch& p : traced.patches) picture.leaves += p.leaves();
@@ -288,7 +287,7 @@ Picture render_view(const Scene& scene, const View& view, const Area& area, cons
     trace(traced, how.most_halved, Tracer(traced, camera, *lighting, how.samples, scene.image.background), AovReader(scene, traced, camera, how.aovs), area,
           part_of_progress(kMeshShare, 1 - kMeshShare), picture);
     picture.rays = traced.embree->count();
-    put_over(overlay(scene, view.objects, traced, camera, how.pixel, view.letter, how.vectors), -area.x0, -area.y0, view.width, view.height, how.vectors, picture);
+    put_over(overlay(scene, view.objects, traced, camera, how.pixel, view.letter, lines, {view.inset.has_value(), view.covered}), -area.x0, -area.y0, view.width, view.height, how.vectors, picture);
     picture.seconds_trace = seconds_since(start);
     return picture;
 }
@@ -312,22 +311,13 @@ void paste(const Picture& part, int x0, int y0, Picture& whole) {
 }  // namespace
 
 Picture render(const Scene& scene, const RenderOptions& options) {
-    const int width = checked_size(options.width ? options.width : scene.image.width, "width", kLargestSize);
-    const int height = checked_size(options.height  ? options.height
-                                    : options.width ? static_cast<int>(std::lround(static_cast<double>(width) * scene.image.height / scene.image.width))
-                                                    : scene.image.height,
-                                    "height", kLargestSize);
+    const Layout layout = layout_of(scene, options);
+    const int width = layout.width, height = layout.height;
+    const std::vector<View>& views = layout.views;
     const Area area = checked_area(options, width, height);
-    const Quality how{
-        checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples),
-        options.tolerance.value_or(scene.tolerance), static_cast<double>(height) / scene.image.height, options.aovs, options.exact, options.vectors, options.most_halved, options.grid};
+    const Quality how{checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples), options.tolerance.value_or(scene.tolerance), layout.pixel,
+                      options.aovs, options.exact, options.vectors, options.most_halved, options.grid};
     double reached = 0;  // progress never runs backwards, whatever its parts report
-    std::optional<double> letter;
-    if (options.letter_points) letter = *options.letter_points * options.pixels_per_point;
-    auto views = views_of(scene, width, height, options.also_fit, letter);
-    if (const double least = kLeastPrinted * options.pixels_per_point; options.vectors && !letter && views.front().letter < least)
-        views = views_of(scene, width, height, options.also_fit, least);
-    for (View& v : views) set_points(v.objects, options.pixels_per_point / how.pixel);
     Picture all;
     all.exact = options.exact;
     all.image = blank(area.width(), area.height(), scene.image.background);
@@ -347,6 +337,7 @@ Picture render(const Scene& scene, const RenderOptions& options) {
         paste(one, seen.x0 - area.x0, seen.y0 - area.y0, all);
         for (DrawnPart part : one.drawn) {
             part.x += seen.x0 - area.x0, part.y += seen.y0 - area.y0;
+            part.holes = v.covered;
             all.drawn.push_back(std::move(part));
         }
         all.tolerance = std::max(all.tolerance, one.tolerance);
@@ -358,6 +349,7 @@ Picture render(const Scene& scene, const RenderOptions& options) {
         all.seconds_mesh += one.seconds_mesh;
         all.seconds_trace += one.seconds_trace;
     }
+    put_over(frames_of(views, layout.pixel), -area.x0, -area.y0, width, height, options.vectors, all);
     put_over(titles_of(scene, views), -area.x0, -area.y0, width, height, options.vectors, all);
     return all;
 }

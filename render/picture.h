@@ -21,6 +21,7 @@ struct RenderOptions {
     std::vector<Point> also_fit;             // cameras that fit have these in the picture too: other frames of a film
     double pixels_per_point = 300.0 / 72;    // of the printed picture: what a scene says in points
     std::optional<double> letter_points;     // size of letters that say nothing else
+    bool printed = false;                    // on a page of a given width: letters are not too small for it
     bool vectors = false;                    // lines and texts are not painted, but given back in `drawn`
     std::function<void(double)> progress;    // fraction done; called from the calling thread
 };

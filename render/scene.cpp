@@ -42,6 +42,10 @@ void add_object(Union& all, const Scene& scene, const SceneObject& o) {
             return;
         case SceneObject::Kind::axes:
             for (const Point& p : ends_of(o.axes)) all.add(p);
+            return;
+        case SceneObject::Kind::arrow:
+            all.add(o.arrow.tail);
+            all.add(o.arrow.tip);
     }
 }
 

@@ -60,6 +60,7 @@ struct Label {
     std::optional<Extent> size;    // of the letters; default a fraction of the picture's height
     std::optional<Color> color;
     Hidden hidden = Hidden::ghost;
+    std::optional<bool> leader;    // a line to what it names: always, with the label apart from it; never; default: when it had to move far
     std::optional<int> side;       // 0 right, 1 above right, 2 above ... 7 below right, 8 on the spot
 };
 
@@ -118,13 +119,19 @@ struct Axes {
         double low = 0, high = 1;
         std::optional<std::vector<double>> ticks;  // default: round numbers
         MathText name;
+        std::vector<MathText> tick_texts{};  // of the ticks, instead of numbers where they are not empty; none: all numbers
     };
     std::array<std::optional<Axis>, 3> axis;
     Point origin{0, 0, 0};
 };
 
+/// A vector: a tangent, a normal, a twist.
+struct Arrow {
+    Point tail, tip;
+};
+
 struct SceneObject {
-    enum class Kind { surface, curve, net, point, axes } kind = Kind::surface;
+    enum class Kind { surface, curve, net, point, axes, arrow } kind = Kind::surface;
     std::string name;              // of the surface or curve
     Label label;
     std::optional<Color> color;    // default by kind
@@ -144,6 +151,7 @@ struct SceneObject {
     ControlNet net;                // Kind::net
     std::vector<Label> net_labels; // Kind::net: one a point, or none
     Axes axes;                     // Kind::axes
+    Arrow arrow;                   // Kind::arrow
 };
 
 struct CameraSettings {
@@ -163,11 +171,29 @@ struct Tolerance {
     double value = 1e-4;  // relative: of the bounding-box diagonal
 };
 
+/// An enlarged part of a picture or panel, or another view of its objects, in a frame that lies over it. Lengths are parts of its
+/// width and height, from its top left corner.
+struct Inset {
+    int side = 1;                        // where the frame lies: as Label::side
+    std::optional<Vec2> at;              // instead: its top left corner
+    double width = 0.35;
+    std::optional<double> height;        // default: as high as wide, in proportion to the picture or the region
+    std::optional<std::array<double, 4>> region;  // what is enlarged: x0, y0, x1, y1
+    std::optional<Point> around;         // or what is around this point, `zoom` times as large
+    double zoom = 3;
+    std::optional<CameraSettings> camera;  // or this view
+    bool lines = true;                   // from the corners of what is enlarged to those of the frame
+    Extent line = 1;
+    std::optional<Color> color;
+};
+
 /// A part of the picture, with a title under it, that shows some of the scene's objects.
 struct Panel {
     std::size_t first = 0, last = 0;       // objects first <= i < last
     MathText title;                        // may be empty
     std::optional<CameraSettings> camera;  // default: the scene's, which fits the objects of all panels
+    MathText mark;                         // "(a)"; may be empty
+    std::vector<Inset> insets;
 };
 
 struct Scene {
@@ -180,6 +206,8 @@ struct Scene {
     std::vector<SceneObject> objects;  // of all panels, one after the other, when there are panels
     std::vector<Panel> panels;
     int panel_rows = 1, panel_columns = 1;
+    bool marks_inside = false;         // the panels' marks: in their top left corners instead of before their titles
+    std::vector<Inset> insets;         // of a scene without panels
     CameraSettings camera;
     ImageSettings image;
     std::optional<LightingSettings> lighting;  // none: the figures' own

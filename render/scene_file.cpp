@@ -10,6 +10,7 @@
 #include "scene_light.h"
 #include "scene_objects.h"
 #include "scene_values.h"
+#include "scene_views.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -87,37 +88,7 @@ std::vector<SceneObject> default_objects(const Scene& scene, const std::set<std:
     return objects;
 }
 
-// ---- camera, image, tolerance ---------------------------------------------------------------------------------------
-
-CameraSettings read_camera(const Json& j, const SceneValues& values) {
-    must_be_object(j, "a camera {\"eye\": ..., \"target\": ...}");
-    j.allow_keys({"eye", "target", "up", "fov", "orthographic", "fit"});
-    CameraSettings camera;
-    if (const auto eye = j.find("eye")) camera.eye = values.point(*eye);
-    if (const auto target = j.find("target")) camera.target = values.point(*target);
-    const auto up = j.find("up"), fov = j.find("fov"), orthographic = j.find("orthographic");
-    if (up) camera.up = values.point(*up);
-    if (up && !(length(*camera.up) > 0)) up->expected("a direction that is not zero");
-    if (fov && orthographic) fov->fail_at_key("found both \"fov\" and \"orthographic\", expected one of them");
-    if (fov) camera.fov = values.number(*fov, "an angle in degrees");
-    if (!(camera.fov > 0.01 && camera.fov < 179)) fov->fail("found " + to_text(camera.fov) + ", expected an angle from 0.01 to 179 degrees");
-    if (orthographic) {
-        if (orthographic->is(Kind::boolean)) {
-            if (orthographic->boolean()) camera.orthographic = 0;
-        } else {
-            camera.orthographic = values.positive(*orthographic, "the height of the view in scene units, or true");
-        }
-    }
-    if (const auto fit = j.find("fit")) camera.fit = values.boolean(*fit);
-    if (camera.eye && camera.target) {
-        const Point view = *camera.target - *camera.eye;
-        if (!(length(view) > 0)) j.find("eye")->fail("found the eye at the target, expected different points");
-        if (camera.up && !(length(cross(view, *camera.up)) > 1e-12 * length(view) * length(*camera.up))) {
-            up->fail("found an up direction along the view, expected another one");
-        }
-    }
-    return camera;
-}
+// ---- image, tolerance ---------------------------------------------------------------------------------------
 
 ImageSettings read_image(const Json& j, const SceneValues& values) {
     must_be_object(j, "an image {\"width\": ..., \"height\": ...}");
@@ -146,44 +117,6 @@ Tolerance read_tolerance(const Json& j, const SceneValues& values) {
     return {Tolerance::Unit::relative, values.positive(*relative, "a positive fraction of the bounding-box diagonal")};
 }
 
-// ---- panels ---------------------------------------------------------------------------------------------------------
-
-/// "2x3": rows by columns, enough for the panels.
-void read_layout(const Json& j, const SceneValues& values, Scene& scene) {
-    const std::string expected = "rows and columns with room for " + std::to_string(scene.panels.size()) + " panels, such as \"1x" + std::to_string(scene.panels.size()) + "\"";
-    const std::string& text = values.text(j, expected);
-    int rows = 0, columns = 0, end = 0;
-    if (std::sscanf(text.c_str(), "%2dx%2d%n", &rows, &columns, &end) != 2 || end != static_cast<int>(text.size()) || rows < 1 || columns < 1 ||
-        static_cast<std::size_t>(rows) * columns < scene.panels.size()) {
-        j.expected(expected);
-    }
-    scene.panel_rows = rows;
-    scene.panel_columns = columns;
-}
-
-void read_panels(const Json& root, SceneBuilder& builder, Scene& scene) {
-    const SceneValues& values = builder.values();
-    const auto panels = root.find("panels"), layout = root.find("layout"), objects = root.find("objects");
-    if (layout && !panels) layout->fail_at_key("found \"layout\" without \"panels\", expected panels to lay out");
-    if (!panels) return;
-    if (objects) panels->fail_at_key("found both \"objects\" and \"panels\", expected the objects in the panels");
-    scene.place = panels->place();
-    for (const Json& j : values.list(*panels, 1, 64, "panels {\"objects\": [...]}")) {
-        must_be_object(j, "a panel {\"objects\": [...], \"title\": ...}");
-        j.allow_keys({"objects", "title", "camera"});
-        Panel panel{scene.objects.size(), 0, {}, {}};
-        for (const Json& o : values.list(j.at("objects", "the objects that the panel draws"), 1, 0, "objects to draw")) scene.objects.push_back(read_object(o, builder));
-        panel.last = scene.objects.size();
-        if (const auto title = j.find("title")) panel.title = read_math_text(*title, values, true);
-        if (const auto camera = j.find("camera")) panel.camera = read_camera(*camera, values);
-        scene.panels.push_back(std::move(panel));
-    }
-    const int count = static_cast<int>(scene.panels.size());
-    scene.panel_columns = count <= 3 ? count : static_cast<int>(std::ceil(std::sqrt(count)));
-    scene.panel_rows = (count + scene.panel_columns - 1) / scene.panel_columns;
-    if (layout) read_layout(*layout, values, scene);
-}
-
 // ---- the whole ------------------------------------------------------------------------------------------------------
 
 void check_version(const Json& root) {
@@ -199,7 +132,7 @@ Surface finished(const std::string& name, const std::string& type, BuiltSurface 
 }
 
 Scene read_scene(const Json& root, const std::map<std::string, double>& overrides) {
-    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "panels", "layout", "camera", "image", "lighting", "tessellation"});
+    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "panels", "layout", "marks", "insets", "camera", "image", "lighting", "tessellation"});
     check_version(root);
     SceneValues values;
     Scene scene;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "promises.h"
+#include "scene_axes.h"
 #include "scene_light.h"
 #include "suggest.h"
 
@@ -13,22 +14,6 @@ namespace isoparm {
 namespace {
 
 using Kind = Json::Kind;
-
-/// A number of pixels, or a text such as "0.5pt": points of the printed picture.
-Extent read_pixels(const Json& j, const SceneValues& values, double most, const std::string& what) {
-    const std::string expected = what + " in pixels, from 0.01 to " + to_text(most) + ", or in points of the printed picture, such as \"0.5pt\"";
-    if (j.is(Kind::string) && j.string().size() > 2 && j.string().ends_with("pt")) {
-        const std::string& text = j.string();
-        double points = 0;
-        const char* end = text.data() + text.size() - 2;
-        const auto [stop, error] = std::from_chars(text.data(), end, points);
-        if (error == std::errc() && stop == end) {
-            if (!(points >= 0.01 && points <= most)) j.expected(expected);
-            return {points, true};
-        }
-    }
-    return values.in_range(j, 0.01, most, expected);
-}
 
 Isolines read_isolines(const Json& j, const SceneValues& values) {
     must_be_object(j, "isolines {\"u\": count, \"v\": count}");
@@ -90,18 +75,12 @@ Outline read_outline(const Json& j, const SceneValues& values) {
 
 void read_place(const Json& at, const SceneValues& values, SceneBuilder& builder, const Json& name, SceneObject& o) {
     if (o.kind == SceneObject::Kind::curve) {
-        const Curve curve = builder.curve(name).curve;
-        o.label.at = values.in_range(at, curve.begin(), curve.end(), "a parameter of the curve, from " + to_text(curve.begin()) + " to " + to_text(curve.end()));
+        o.label.at = place_on(builder.curve(name).curve, at, values);
         return;
     }
-    const auto uv = values.numbers(at, 2, 2, "numbers [u, v]");
     const BuiltSurface s = builder.surface(name);
     if (s.patches.size() != 1) at.fail("found a place on a surface of " + std::to_string(s.patches.size()) + " patches, expected one of a single patch");
-    const Patch& patch = s.patches[0].patch;
-    const Rect r = patch.rect();
-    const bool inside = uv[0] >= r.u0 && uv[0] <= r.u1 && uv[1] >= r.v0 && uv[1] <= r.v1 && (patch.domain() == Domain::quad || uv[0] + uv[1] <= 1);
-    if (!inside) at.fail("found [" + to_text(uv[0]) + ", " + to_text(uv[1]) + "], expected a point of the domain of the surface");
-    o.label.at_uv = {uv[0], uv[1]};
+    o.label.at_uv = place_on(s.patches[0].patch, at, values);
 }
 
 /// "text", or {"text": ..., and how it looks}. `name`: the curve or surface.
@@ -113,13 +92,14 @@ void read_label(const Json& j, SceneBuilder& builder, const Json& name, SceneObj
     }
     if (!j.is(Kind::object)) j.expected("a text, or {\"text\": ..., \"at\": ..., \"side\": ...}");
     const bool placed = o.kind == SceneObject::Kind::curve || o.kind == SceneObject::Kind::surface;
-    if (placed) j.allow_keys({"text", "at", "side", "size", "color", "hidden"});
-    else j.allow_keys({"text", "side", "size", "color", "hidden"});
+    if (placed) j.allow_keys({"text", "at", "side", "leader", "size", "color", "hidden"});
+    else j.allow_keys({"text", "side", "leader", "size", "color", "hidden"});
     o.label.text = read_math_text(j.at("text", "the text of the label"), values, false);
     if (const auto at = j.find("at")) read_place(*at, values, builder, name, o);
     if (const auto side = j.find("side")) {
         o.label.side = static_cast<int>(values.word(*side, {"right", "above right", "above", "above left", "left", "below left", "below", "below right", "center"}));
     }
+    if (const auto leader = j.find("leader")) o.label.leader = values.boolean(*leader);
     if (const auto size = j.find("size")) o.label.size = read_pixels(*size, values, 1000, "a size of letters");
     if (const auto color = j.find("color")) o.label.color = values.color(*color);
     if (const auto hidden = j.find("hidden")) o.label.hidden = read_hidden(*hidden, values);
@@ -210,52 +190,23 @@ TwistArrows read_twists(const Json& j, const Json& surface, SceneBuilder& builde
     return twists;
 }
 
-// ---- axes -----------------------------------------------------------------------------------------------------------
-
-constexpr const char* kAxisNames[3] = {"x", "y", "z"};
-
-/// false: none; true: round numbers; [0, 0.5, 1]: these.
-std::optional<std::vector<double>> read_ticks(const Json& j, const SceneValues& values) {
-    if (j.is(Kind::boolean)) {
-        if (j.boolean()) return {};
-        return std::vector<double>{};
-    }
-    if (!j.is(Kind::array)) j.expected("true, false, or an array of numbers");
-    auto ticks = values.numbers(j, 0, 1000, "numbers");
-    std::sort(ticks.begin(), ticks.end());
-    return ticks;
-}
-
-Axes read_axes(const Json& j, const SceneValues& values) {
-    must_be_object(j, "axes {\"x\": [from, to], \"y\": [from, to]}");
-    j.allow_keys({"x", "y", "z", "ticks", "names", "origin"});
-    Axes axes;
-    if (const auto origin = j.find("origin")) axes.origin = values.point(*origin);
-    const auto ticks = j.find("ticks"), names = j.find("names");
-    if (ticks && ticks->is(Kind::object)) ticks->allow_keys({"x", "y", "z"});
-    const auto names_of = names ? values.list(*names, 1, 3, "names, one an axis") : std::vector<Json>{};
-    std::size_t count = 0;
-    for (int k = 0; k < 3; ++k) {
-        const auto range = j.find(kAxisNames[k]);
-        if (!range) continue;
-        const auto [low, high] = values.interval(*range);
-        Axes::Axis& axis = *(axes.axis[k] = Axes::Axis());
-        axis.low = low;
-        axis.high = high;
-        if (ticks) {
-            const auto own = ticks->is(Kind::object) ? ticks->find(kAxisNames[k]) : nullptr;
-            if (own) axis.ticks = read_ticks(*own, values);
-            else if (!ticks->is(Kind::object)) axis.ticks = read_ticks(*ticks, values);
-        }
-        if (count < names_of.size()) axis.name = read_math_text(names_of[count], values, false);
-        ++count;
-    }
-    if (count == 0) j.fail("found axes without a range, expected at least one of \"x\", \"y\" and \"z\": [from, to]");
-    if (names && names_of.size() != count) names->fail("found " + std::to_string(names_of.size()) + " names for " + std::to_string(count) + " axes, expected one each");
-    return axes;
-}
-
 }  // namespace
+
+/// A number of pixels, or a text such as "0.5pt": points of the printed picture.
+Extent read_pixels(const Json& j, const SceneValues& values, double most, const std::string& what) {
+    const std::string expected = what + " in pixels, from 0.01 to " + to_text(most) + ", or in points of the printed picture, such as \"0.5pt\"";
+    if (j.is(Kind::string) && j.string().size() > 2 && j.string().ends_with("pt")) {
+        const std::string& text = j.string();
+        double points = 0;
+        const char* end = text.data() + text.size() - 2;
+        const auto [stop, error] = std::from_chars(text.data(), end, points);
+        if (error == std::errc() && stop == end) {
+            if (!(points >= 0.01 && points <= most)) j.expected(expected);
+            return {points, true};
+        }
+    }
+    return values.in_range(j, 0.01, most, expected);
+}
 
 void must_be_object(const Json& j, const std::string& what) {
     if (!j.is(Kind::object)) j.expected(what);
@@ -271,10 +222,10 @@ MathText read_math_text(const Json& j, const SceneValues& values, bool prose) {
 
 SceneObject read_object(const Json& j, SceneBuilder& builder) {
     const SceneValues& values = builder.values();
-    must_be_object(j, "an object with one of the keys surface, curve, net, point or axes");
-    const auto surface = j.find("surface"), curve = j.find("curve"), net = j.find("net"), point = j.find("point"), axes = j.find("axes");
-    const int kinds = !!surface + !!curve + !!net + !!point + !!axes;
-    if (kinds != 1) j.fail("found " + std::to_string(kinds) + " of the keys surface, curve, net, point and axes, expected one of them");
+    must_be_object(j, "an object with one of the keys surface, curve, net, point, axes or arrow");
+    const auto surface = j.find("surface"), curve = j.find("curve"), net = j.find("net"), point = j.find("point"), axes = j.find("axes"), arrow = j.find("arrow");
+    const int kinds = !!surface + !!curve + !!net + !!point + !!axes + !!arrow;
+    if (kinds != 1) j.fail("found " + std::to_string(kinds) + " of the keys surface, curve, net, point, axes and arrow, expected one of them");
 
     SceneObject o;
     if (surface) {
@@ -308,6 +259,11 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
         j.allow_keys({"point", "color", "opacity", "material", "radius", "label", "dot", "hidden"});
         o.kind = SceneObject::Kind::point;
         o.point = values.point(*point);
+    } else if (arrow) {
+        j.allow_keys({"arrow", "color", "opacity", "line", "dash", "hidden", "label"});
+        o.kind = SceneObject::Kind::arrow;
+        o.arrow = read_arrow(*arrow, builder);
+        o.line.width = 2;
     } else {
         j.allow_keys({"axes", "color", "opacity", "line", "hidden", "size"});
         o.kind = SceneObject::Kind::axes;

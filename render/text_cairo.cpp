@@ -328,6 +328,13 @@ std::string pdf_page(const PaperFigure& figure) {
     for (const DrawnPart& part : figure.parts) {
         cairo_save(c);
         cairo_rectangle(c, part.x, part.y, part.width, part.height);
+        for (const auto& [x, y, width, height] : part.holes) {  // the other way round
+            cairo_move_to(c, part.x + x, part.y + y);
+            cairo_rel_line_to(c, 0, height);
+            cairo_rel_line_to(c, width, 0);
+            cairo_rel_line_to(c, 0, -height);
+            cairo_close_path(c);
+        }
         cairo_clip(c);
         cairo_translate(c, part.x, part.y);
         for (const DrawingItem& item : part.drawing) {

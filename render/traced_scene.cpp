@@ -82,6 +82,7 @@ private:
                 if (o.line.width > 0) return;
                 return add_balls({o.point}, radius_of(o, size_), o.color.value_or(point_color()), o);
             case SceneObject::Kind::axes:
+            case SceneObject::Kind::arrow:
                 return;  // drawn over the picture
         }
     }

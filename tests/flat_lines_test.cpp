@@ -104,5 +104,72 @@ TEST(Axes, TicksStandWhereTheyBelong) {
     EXPECT_EQ(texts, "1 2 t H ");
 }
 
+TEST(Axes, TicksMayHaveNamesInsteadOfNumbers) {
+    const Scene scene = scene_from(R"json({ "isoparm": 1, "objects": [{ "axes": { "x": [0, 3], "ticks": [[2, "i+1"], 1, [0, "i-1"]] } }] })json");
+    const Axes::Axis& x = *scene.objects[0].axes.axis[0];
+    EXPECT_EQ(*x.ticks, (std::vector<double>{0, 1, 2})) << "in order";
+    EXPECT_EQ(plain(x.tick_texts[0]), "i\u22121");
+    EXPECT_TRUE(x.tick_texts[1].empty());
+    EXPECT_EQ(plain(x.tick_texts[2]), "i+1");
+    const Camera camera = make_camera(scene.camera, drawn_points(scene), 400, 400);
+    std::string texts;
+    for (const DrawingItem& item : overlay(scene, scene.objects, build_traced_scene(scene, 1e-3, {}), camera, 1, 20))
+        if (const auto* text = std::get_if<Text>(&item.shape)) texts += plain(text->text) + " ";
+    EXPECT_EQ(texts, "i\u22121 1 i+1 ");
+}
+
+// ---- arrows ---------------------------------------------------------------------------------------------------------
+
+TEST(Arrows, AreTheVectorsOfSurfacesAndCurves) {
+    // S = (u, v, u v): S_u = (1, 0, v), S_uv = (0, 0, 1); the parabola (t, t^2, 0) has curvature toward +y at 0.
+    const Scene scene = scene_from(R"json({ "isoparm": 1,
+        "curves": { "c": { "type": "bezier", "points": [[-1,1,0], [0,-1,0], [1,1,0]] } },
+        "surfaces": { "S": { "type": "bilinear", "points": [[0,0,0], [1,0,0], [0,1,0], [1,1,1]] } },
+        "objects": [ { "arrow": { "surface": "S", "at": [0.5, 0.5], "along": "u", "scale": 2 } },
+                     { "arrow": { "surface": "S", "at": [0.5, 0.5], "along": "uv" } },
+                     { "arrow": { "surface": "S", "at": [0, 0], "along": "normal", "length": 3 } },
+                     { "arrow": { "curve": "c", "at": 0.5, "along": "normal" } },
+                     { "arrow": { "curve": "c", "at": 0.5, "length": 1 } },
+                     { "arrow": { "from": [1,2,3], "to": [1,2,4] } } ] })json");
+    const Point expected[6][2] = {{{0.5, 0.5, 0.25}, {2.5, 0.5, 1.25}}, {{0.5, 0.5, 0.25}, {0.5, 0.5, 1.25}}, {{0, 0, 0}, {0, 0, 3}},
+                                  {{0, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {1, 0, 0}}, {{1, 2, 3}, {1, 2, 4}}};
+    ASSERT_EQ(scene.objects.size(), 6u);
+    for (std::size_t k = 0; k < 6; ++k) {
+        EXPECT_LT(distance(scene.objects[k].arrow.tail, expected[k][0]), 1e-12) << k;
+        EXPECT_LT(distance(scene.objects[k].arrow.tip, expected[k][1]), 1e-12) << k;
+    }
+}
+TEST(Arrows, KeepTheirWidthAndPointAtTheirTip) {
+    // Shaft and head on the picture, whatever the depth: the same width, the tip where the camera projects it.
+    for (const double z : {0.0, 5.0}) {
+        Scene scene = from_above(4, 200, 200, 1);
+        scene.camera.orthographic.reset();
+        SceneObject& o = add(scene, Kind::arrow);
+        o.arrow = {{-0.5, 0, z}, {0.5, 0.2, z}};
+        o.line.width = 3;
+        const Camera camera = make_camera(scene.camera, {}, 200, 200);
+        const Drawing d = overlay(scene, scene.objects, build_traced_scene(scene, 1e-3, {}), camera, 1, 8);
+        ASSERT_EQ(d.size(), 2u);
+        const Vec2 tail = camera.project(o.arrow.tail), tip = camera.project(o.arrow.tip);
+        const auto& shaft = std::get<Polyline>(d[0].shape);
+        const auto& head = std::get<Filled>(d[1].shape).outline;
+        EXPECT_EQ(shaft.width, 3);
+        EXPECT_NEAR(apart(shaft.points.front(), tail), 0, 1e-9);
+        EXPECT_NEAR(apart(head[0], tip), 0, 1e-9);
+        EXPECT_NEAR(apart(head[1], head[3]), 2 * 1.9 * 3, 1e-6);
+        EXPECT_LT(apart(shaft.points.back(), tip), apart(head[1], tip)) << "no gap between shaft and head";
+        EXPECT_GT(apart(shaft.points.back(), tip), 3) << "the shaft does not stick out of the tip";
+    }
+}
+TEST(Arrows, AreHiddenBySurfaces) {
+    Scene scene = from_above(4, 100, 100, 1);
+    add_sheet(scene, 0, 1);
+    SceneObject& o = add(scene, Kind::arrow);
+    o.arrow = {{-0.8, 0, -1}, {0.8, 0, -1}};
+    o.line.width = 2;
+    const Camera camera = make_camera(scene.camera, {}, 100, 100);
+    EXPECT_TRUE(overlay(scene, scene.objects, build_traced_scene(scene, 1e-3, {}), camera, 1, 8).empty());
+}
+
 }  // namespace
 }  // namespace isoparm

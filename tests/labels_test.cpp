@@ -146,6 +146,40 @@ TEST(Labels, KeepOffLinesAndTurnAwayFromTheMiddle) {
     EXPECT_GT(std::get<Text>(drawing.at(0).shape).at.y + box.top, 52) << "below, as asked";
 }
 
+TEST(Labels, FarFromWhatTheyNameHaveLeaders) {
+    // Obstacles all around the anchor: the label stands beyond them, and a line leads to the ball's rim.
+    std::vector<Obstacle> crowd;
+    for (int x = -50; x <= 50; x += 4)
+        for (int y = -50; y <= 50; y += 4)
+            if (std::hypot(x, y) > 6) crowd.push_back({{200.0 + x, 200.0 + y}, 2});
+    Label label;
+    label.text = parse_math_text("P_{00}");
+    const auto placed = [&](const std::vector<Obstacle>& obstacles) {
+        Drawing d;
+        place_labels({{&label, -1, {{{200, 200}, 1, {}, 5}}, 20, {0, 0, 0}}}, obstacles, 400, 400, d);
+        return d;
+    };
+    EXPECT_EQ(placed({}).size(), 1u) << "beside it";
+    const Drawing d = placed(crowd);
+    ASSERT_EQ(d.size(), 2u);
+    const auto& line = std::get<Polyline>(d[0].shape).points;
+    EXPECT_NEAR(std::hypot(line[1].x - 200, line[1].y - 200), 5 + 0.08 * 20, 1e-9);
+    EXPECT_GT(std::hypot(line[0].x - 200, line[0].y - 200), 40);
+    label.leader = false;
+    EXPECT_EQ(placed(crowd).size(), 1u) << "not wanted";
+    label.leader = true;
+    EXPECT_EQ(placed({}).size(), 2u) << "wanted in any case";
+}
+TEST(Labels, WithLeadersAreNotFaintButTheirLinesDashed) {
+    Label label;
+    label.text = parse_math_text("A");
+    label.leader = true;
+    Drawing d;
+    place_labels({{&label, -1, {{{200, 200}, 0, {}, 5}}, 20, {0, 0, 0}}}, {}, 400, 400, d);
+    ASSERT_EQ(d.size(), 2u);
+    EXPECT_EQ(d[1].opacity, 1);
+    EXPECT_FALSE(std::get<Polyline>(d[0].shape).dash.empty());
+}
 TEST(Labels, BehindASurfaceAreFainterOrAbsent) {
     std::vector<double> opacity;
     for (const Hidden hidden : {Hidden::show, Hidden::ghost, Hidden::hide}) {

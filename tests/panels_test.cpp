@@ -1,11 +1,14 @@
 // panels_test.cpp -- panels beside each other, and the picture as a whole: threads, sheets over each other.
-#include "panels.h"
+#include "insets.h"
 
 #include <tbb/global_control.h>
 
 #include "camera.h"
 #include "drawing_tests.h"
 #include "error.h"
+#include "layout.h"
+#include "legend.h"
+#include "text_cairo.h"
 
 namespace isoparm {
 namespace {
@@ -54,6 +57,130 @@ TEST(Panels, TooSmallPicturesAreRefused) {
     RenderOptions options;
     options.width = options.height = 1;
     EXPECT_THROW(render(scene_from(kPanels), options), Error);
+}
+
+TEST(Panels, HaveOneScaleAlsoWhereOnlyOneHasALegend) {
+    Scene scene = scene_from(R"json({ "isoparm": 1, "surfaces": { "S": { "type": "bilinear", "points": [[0,0,0], [1,0,0], [0,1,0], [1,1,1]] } },
+        "panels": [ { "objects": [{ "surface": "S" }] }, { "objects": [{ "surface": "S", "color_by": "mean", "legend": true }] } ] })json");
+    const auto views = views_of(scene, 800, 400, {});
+    const Camera a = camera_of(views[0]), b = camera_of(views[1]);
+    EXPECT_EQ(a.eye, b.eye);
+    EXPECT_EQ(a.half_height / a.height, b.half_height / b.height) << "scene units a pixel";
+    EXPECT_GT(a.width, b.width) << "the legend's room";
+    for (const Point& p : {Point{0, 0, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}}) {
+        EXPECT_GT(b.project(p).x, 0);
+        EXPECT_LT(b.project(p).x, b.width);
+    }
+}
+TEST(Panels, AreMarkedUnlessTheirTitlesAre) {
+    const auto marks = [](const std::string& keys, const std::string& title = "") {
+        std::string panels;
+        for (int k = 0; k < 3; ++k) panels += std::string(k ? "," : "") + R"({ "objects": [{ "point": [0,0,0] }] )" + (title.empty() ? "" : ", \"title\": \"" + title + "\"") + "}";
+        const Scene scene = scene_from("{ \"isoparm\": 1, " + keys + " \"panels\": [" + panels + "] }");
+        std::string all;
+        for (const DrawingItem& item : titles_of(scene, views_of(scene, 600, 200, {}))) all += plain(std::get<Text>(item.shape).text) + "|";
+        return all;
+    };
+    EXPECT_EQ(marks(""), "(a)|(b)|(c)|");
+    EXPECT_EQ(marks("", "x"), "(a)\u2002x|(b)\u2002x|(c)\u2002x|");
+    EXPECT_EQ(marks("", "(i) x"), "(i) x|(i) x|(i) x|");
+    EXPECT_EQ(marks("\"marks\": false,", "x"), "x|x|x|");
+    EXPECT_EQ(marks("\"marks\": \"i.\","), "i.|ii.|iii.|");
+    EXPECT_EQ(marks("\"marks\": { \"text\": \"A\", \"place\": \"inside\" },", "x"), "A|x|B|x|C|x|");
+}
+TEST(Legends, OfSeveralBarsAndLargeLettersFitIntoHalfThePicture) {
+    std::vector<SceneObject> objects(3);
+    for (std::size_t k = 0; k < 3; ++k) objects[k].color_by.legend = true, objects[k].color_by.what = ColorBy::What(1 + k);
+    for (const double letter : {10.0, 170.0}) {
+        const LegendRoom room = legend_room(objects, letter, 600);
+        EXPECT_LE(room.width, 300);
+        EXPECT_NEAR(room.width, 3 * legend_width(room.letter), 1);
+        EXPECT_LE(room.letter, letter);
+        std::vector<ColorScale> scales(3);
+        for (const DrawingItem& item : legends(scales, 600, 400, room.letter))
+            if (const auto* text = std::get_if<Text>(&item.shape)) {
+                EXPECT_GT(text->at.x, 299);
+                EXPECT_LT(text->at.x + (text->turned ? 0 : text_box(text->text, text->size).advance), 600);
+                if (text->turned) EXPECT_LT(text_box(text->text, text->size).advance, 400);
+            }
+    }
+    objects[1].color_by = objects[0].color_by = ColorBy{ColorBy::What::mean, {{-1, 1}}, 24, {}, true};
+    EXPECT_NEAR(legend_room(objects, 10, 600).width, 2 * legend_width(10), 1) << "what two share is drawn once";
+}
+
+// ---- insets ---------------------------------------------------------------------------------------------------------
+
+/// Middle of what is red in a box of the picture.
+Vec2 red_middle(const Image& image, int x0, int y0, int x1, int y1) {
+    double sum = 0, x = 0, y = 0;
+    for (int j = y0; j < y1; ++j)
+        for (int i = x0; i < x1; ++i) {
+            const float* c = image.at(i, j);
+            const double red = c[1] < 0.6f ? 1 : 0;  // lit or not
+            sum += red, x += red * (i + 0.5), y += red * (j + 0.5);
+        }
+    return {x / sum, y / sum};
+}
+TEST(Insets, AnchorAndRasterAgreeInPanelsAndInsets) {
+    // The ball is small: the middle of its picture is where the camera of its view projects it, to half a pixel.
+    for (const bool orthographic : {true, false}) {
+        Scene scene = scene_from(std::string(R"json({ "isoparm": 1, "panels": [ { "objects": [{ "point": [0,0,0], "color": "#000" }] },
+            { "objects": [{ "point": [0.5,0.3,0.2], "radius": 0.02, "color": "#f00" }], "insets": [{ "around": [0.49,0.3,0.19], "zoom": 3, "place": "below left", "size": 0.4, "color": "#000" }] } ],
+            "camera": { "eye": [1,-3,2], "target": [0.2,0.1,0], )json") + (orthographic ? "\"orthographic\": 2" : "\"fov\": 35") + R"json( }, "image": { "width": 640, "height": 300, "samples": 16 } })json");
+        const auto views = views_of(scene, 640, 300, {});
+        ASSERT_EQ(views.size(), 3u);
+        const Image image = render(scene, {}).image;
+        for (const View* v : {&views[1], &views[2]}) {
+            const bool inset = v == &views[2];
+            const Vec2 at = camera_of(*v).project({0.5, 0.3, 0.2});
+            const double x = at.x + v->x, y = at.y + v->y;
+            const int r = inset ? 18 : 10;
+            ASSERT_TRUE(!inset || (at.x > r && at.y > r && at.x < v->width - r && at.y < v->height - r)) << "what is around the point is in the inset";
+            const Vec2 seen = red_middle(image, int(x) - r, int(y) - r, int(x) + r, int(y) + r);
+            EXPECT_NEAR(seen.x, x, 0.5) << orthographic << inset;
+            EXPECT_NEAR(seen.y, y, 0.5) << orthographic << inset;
+        }
+        const Camera whole = camera_of(views[1]), part = camera_of(views[2]);
+        EXPECT_NEAR(whole.pixel_size(2) / part.pixel_size(2), 3, 1e-12) << "three times as large";
+        const Point a{0.4, 0.2, 0.2};
+        EXPECT_LT(length(cross(part.ray(part.project(a).x, part.project(a).y).direction, orthographic ? part.forward : a - part.eye)), 1e-12) << "rays and projections are inverse";
+    }
+}
+TEST(Insets, ARegionFillsItsFrame) {
+    const Scene scene = scene_from(R"json({ "isoparm": 1, "objects": [{ "point": [0,0,0] }], "insets": [{ "region": [0.1, 0.2, 0.3, 0.6], "place": [0.5, 0.1], "size": 0.4 }], "image": { "width": 500, "height": 400 } })json");
+    const auto views = views_of(scene, 500, 400, {});
+    ASSERT_EQ(views.size(), 2u);
+    EXPECT_EQ(views[1].x, 250);
+    EXPECT_EQ(views[1].y, 40);
+    EXPECT_EQ(views[1].width, 200);
+    EXPECT_EQ(views[1].height, 320) << "160 of 100 pixels, twice as large";
+    const Camera whole = camera_of(views[0]), part = camera_of(views[1]);
+    const Vec2 p = whole.project({0, 0, 0}), q = part.project({0, 0, 0});
+    EXPECT_NEAR(q.x, 2 * (p.x - 50), 1e-9);
+    EXPECT_NEAR(q.y, 2 * (p.y - 80), 1e-9);
+}
+TEST(Insets, LinesOfThePictureEndAtTheirFrames) {
+    Scene scene = scene_from(R"json({ "isoparm": 1, "curves": { "c": { "type": "line", "points": [[-1,0,0], [1,0,0]] } }, "objects": [{ "curve": "c", "line": 4, "color": "#f00" }],
+        "insets": [{ "camera": { "eye": [0,0,5], "target": [0,9,0], "fov": 5 }, "place": "center", "size": 0.5 }],
+        "camera": { "eye": [0,0,5], "target": [0,0,0], "up": [0,1,0], "orthographic": 2 }, "image": { "width": 200, "height": 200, "samples": 1 } })json");
+    RenderOptions options;
+    options.vectors = true;
+    const Picture p = render(scene, options);
+    ASSERT_GE(p.drawn.size(), 1u);
+    ASSERT_EQ(p.drawn[0].holes.size(), 1u);
+    EXPECT_EQ(p.drawn[0].holes[0], (std::array{50, 50, 100, 100}));
+    const Image image = render(scene, {}).image;
+    EXPECT_LT(image.at(25, 100)[1], 0.01) << "the red line";
+    EXPECT_GT(image.at(75, 100)[1], 0.99) << "not in the frame";
+}
+TEST(Layouts, CameraPrintAndRenderHaveTheSameLettersOnPaper) {
+    const Scene scene = scene_from(kPanels);
+    RenderOptions options;
+    options.width = 400;
+    options.printed = true;
+    EXPECT_NEAR(layout_of(scene, options).views[0].letter, 6 * options.pixels_per_point, 1e-9) << "at least 6 points";
+    options.printed = false;
+    EXPECT_LT(layout_of(scene, options).views[0].letter, 6 * options.pixels_per_point);
 }
 
 // ---- the whole ------------------------------------------------------------------------------------------------------

@@ -7,10 +7,10 @@
 #include <regex>
 
 #include "camera.h"
-#include "drawing_tests.h"
 #include "drawn.h"
 #include "expect_program.h"
 #include "outlines.h"
+#include "printed.h"
 #include "overlay.h"
 #include "text_cairo.h"
 
@@ -18,23 +18,6 @@ namespace isoparm {
 namespace {
 
 using namespace test;
-
-constexpr const char* kBall = R"({ "isoparm": 1, "title": "A & <B>", "surfaces": { "s": { "type": "bilinear", "points": [[[-1,-1,0],[-1,1,0]],[[1,-1,0],[1,1,0]]] } },
-  "objects": [ { "surface": "s", "color": "white", "opacity": 0.2, "isolines": { "u": 3, "v": 3, "width": "0.5pt" }, "outline": { "width": "1pt", "color": "#ff0000" } },
-               { "point": [0.4, -0.3, 0.7], "radius": 0.05, "color": "black", "label": { "text": "P_{00}", "side": "right", "size": "9pt" } } ],
-  "camera": { "eye": [3,-4,2.5], "target": [0,0,0] }, "image": { "width": 240, "height": 180, "samples": 4 } })";
-
-/// Renders into the folder of the scene.
-struct Printed {
-    TemporaryFolder folder;
-    explicit Printed(const std::string& scene = kBall) { write_all(folder / "scene.json", scene); }
-    std::string file(const std::string& name, const std::string& options = "") const {
-        const Outcome r = test::run("render scene.json --threads 1 --quiet -o " + name + " " + options, folder.path());
-        EXPECT_EQ(r.code, 0) << r.err;
-        return read_all(folder / name);
-    }
-    Outcome refused(const std::string& arguments) const { return test::run("render scene.json " + arguments, folder.path()); }
-};
 
 double attribute(const std::string& text, const std::string& pattern) {
     std::smatch m;
@@ -112,6 +95,12 @@ TEST(Paper, TheAnchorIsWhereTheRasterHasThePoint) {
     EXPECT_NEAR(y / all, std::stod(m[2]), 0.5);
 }
 
+TEST(Paper, SvgHasNoControlCharacters) {
+    const Printed p(R"({ "isoparm": 1, "title": "a\u0001b\u001fc", "objects": [ { "point": [0,0,0] } ], "image": { "width": 32, "height": 24, "samples": 1 } })");
+    const std::string svg = p.file("a.svg");
+    EXPECT_NE(svg.find("<title>a b c</title>"), std::string::npos);
+    EXPECT_TRUE(std::none_of(svg.begin(), svg.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\n'; }));
+}
 TEST(Paper, PdfEmbedsTheFontsOfItsLetters) {
     const Printed p;
     EXPECT_NE(p.file("a.pdf").find("/FontFile"), std::string::npos);
@@ -126,22 +115,6 @@ TEST(Paper, TheSameFigureGivesTheSameBytes) {
         const std::string name = std::string("a.") + format, other = std::string("b.") + format;
         EXPECT_TRUE(p.file(name) == p.file(name, "--threads 2")) << format;
     }
-}
-
-TEST(Paper, TikzHasNodesLinesAndTheRasterBesideIt) {
-    const Printed p;
-    const std::string tex = p.file("a.tex");
-    EXPECT_NE(tex.find("\\includegraphics[width=57.6bp,height=43.2bp]{a-raster.png}"), std::string::npos);
-    EXPECT_NE(tex.find("{$P_{00}$};"), std::string::npos);
-    EXPECT_NE(tex.find("\\draw[line width=1bp,draw={rgb,255:red,255;green,0;blue,0}"), std::string::npos);
-    EXPECT_EQ(std::count(tex.begin(), tex.end(), '{'), std::count(tex.begin(), tex.end(), '}'));
-    EXPECT_TRUE(std::filesystem::exists(p.folder / "a-raster.png"));
-}
-
-TEST(Paper, MathTextBecomesTex) {
-    for (const auto& [from, to] : {std::pair<std::string, std::string>{"P_{00}", "$P_{00}$"}, {"H_i^{(3)}(t)", "$H_{i}^{(3)}(t)$"}, {"Triangle $T_1$", "Triangle $T_{1}$"},
-                                   {"\\alpha-\\Delta", "$\\alpha -\\Delta $"}, {"50% of $x_{i_j}$", "50\\% of $x_{i_{j}}$"}, {"\\mathbf{S}_u", "$\\mathbf{S}_{u}$"}})
-        EXPECT_EQ(tex_of(parse_math_text(from)), to);
 }
 
 TEST(Paper, WhatCannotBeIsRefused) {

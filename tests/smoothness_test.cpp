@@ -146,9 +146,9 @@ TEST(JumpHeat, IsTheAngleAndTheCurvatureThatWerePlanted) {
     for (const Point& p : edges[0].points) EXPECT_LT(std::hypot(p.x, p.z), 1e-14);
     JumpHeat heat;
     heat.of = JumpHeat::Of::g1;
-    EXPECT_EQ(scale_of(heat, edges).high, 30);
+    EXPECT_EQ(scale_of(heat, edges, 3).high, 30);
     heat.top = 20;
-    EXPECT_TRUE(scale_of(heat, edges).above);
+    EXPECT_TRUE(scale_of(heat, edges, 3).above);
     const Patch bend = make_bezier_patch({{{0, 0, 0}, {0, 2, 0}}, {{0.5, 0, 0}, {0.5, 2, 0}}, {{1, 0, 0.35}, {1, 2, 0.35}}});
     const auto bent = hot_edges({{"a", left}, {"b", bend}}, JumpHeat::Of::g2, 3);
     ASSERT_EQ(bent.size(), 1u);

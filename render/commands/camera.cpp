@@ -4,8 +4,7 @@
 
 #include "commands/render_options.h"
 #include "error.h"
-#include "overlay.h"
-#include "panels.h"
+#include "layout.h"
 
 namespace isoparm {
 
@@ -24,14 +23,14 @@ of the first without a camera of its own.
 std::string listed_numbers(const Point& p) { return "[" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + "]"; }
 
 Camera camera_of(const Scene& scene, const RenderOptions& how) {
-    const int width = how.width ? how.width : scene.image.width;
-    const int height = how.height ? how.height : how.width ? static_cast<int>(std::lround(double(width) * scene.image.height / scene.image.width)) : scene.image.height;
-    std::optional<double> letter;
-    if (how.letter_points) letter = *how.letter_points * how.pixels_per_point;
-    const auto views = views_of(scene, width, height, {}, letter);
+    // Insets stand behind the view that they are of.
+    const auto views = layout_of(scene, how).views;
+    std::vector<std::size_t> panels;
+    for (std::size_t i = 0; i < views.size(); ++i)
+        if (!views[i].inset) panels.push_back(i);
     std::size_t k = 0;
-    while (k + 1 < views.size() && scene.panels[k].camera) ++k;
-    return camera_of(views[k]);
+    while (k + 1 < panels.size() && scene.panels[k].camera) ++k;
+    return camera_of(views[panels[k]]);
 }
 
 int run(const std::vector<std::string>& arguments) {

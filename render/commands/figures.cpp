@@ -88,6 +88,18 @@ int run(const std::vector<std::string>& arguments) {
 
     check_picture_path(options, (folder / ("contact_sheet." + format)).string());
 
+    // No figure replaces what any of them reads, nor does the contact sheet.
+    std::vector<NamedFile> inputs;
+    for (const auto& scene : scenes) {
+        const fs::path& file = scene.second;
+        try {
+            for (const NamedFile& input : inputs_of(load_scene(file.string()))) inputs.push_back(input);
+        } catch (const std::exception&) {
+            inputs.push_back({"SCENE", file.string()});  // what is wrong with it is told when it is its turn
+        }
+    }
+    check_outputs(options, {{"-o", (folder / "contact_sheet.png").string()}}, inputs);
+
     int result = kSuccess;
     std::vector<Image> thumbnails;
     for (const auto& [name, file] : scenes) {
@@ -96,7 +108,7 @@ int run(const std::vector<std::string>& arguments) {
             if (!options.quiet()) print_notes(scene);
             finite_diagonal(scene, bounding_box(scene));
             const std::string path = (folder / (name + "." + format)).string();
-            check_outputs(options, {{"-o", path}}, inputs_of(scene));
+            check_outputs(options, {{"-o", path}}, inputs);
             const Picture picture = [&] {
                 ProgressBar bar(name, options.quiet());
                 RenderOptions with_bar = rendering_of(how, path);

@@ -53,6 +53,7 @@ void read_page(const Options& options, RenderOptions& how) {
         if (!(points >= 0.99 * 72 / 25.4 && points <= 72 / 25.4 * 2001)) options.fail("--width: found " + quoted(*width) + ", expected a width from 1mm to 2000mm with a unit: mm, cm, in or pt, such as 84mm");
         if (!(pixels >= 16 && pixels <= 32768)) options.fail("--width " + *width + " at " + to_text(dpi) + " pixels an inch is " + to_text(std::round(pixels)) + " pixels wide, expected 16 to 32768: change --dpi");
         how.width = static_cast<int>(std::lround(pixels));
+        how.printed = true;
         how.pixels_per_point = how.width / points;
     }
     if (const auto size = options.value("--font-size")) {
