@@ -145,7 +145,9 @@ struct CameraSettings {
 };
 
 struct ImageSettings {
-    int width = 1024, height = 768, samples = 64;
+    int width = 1024, height = 768;
+    int samples = 0;                  // 0: as many as is usual
+    double noise = 0;                 // the target; 0: none
     std::optional<Color> background;  // none: transparent
 };
 

@@ -6,7 +6,7 @@
 #include "picture.h"
 
 namespace isoparm {
-/// --size, --width, --dpi, --font-size, --samples, --tolerance, --crop. Throws Error(usage).
+/// --size, --width, --dpi, --font-size, --samples, --noise, --tolerance, --crop. Throws Error(usage).
 RenderOptions read_render_options(const Options& options);
 /// Those of pictures for print: --width, --dpi, --font-size, --text.
 const std::vector<Options::Known>& paper_options();
