@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <numbers>
 
 #include "error.h"
@@ -108,6 +110,20 @@ std::shared_ptr<const EnvironmentImage> load_environment(const std::string& path
     for (const float c : rgb)
         if (!(c >= 0 && c <= kMostRadiance)) fail("found the value " + to_text(static_cast<double>(c)) + " in the image, expected radiances from 0 to 1e12");
     return std::make_shared<const EnvironmentImage>(width, height, std::move(rgb));
+}
+
+EnvironmentImages load_environments(const std::vector<Light>& lights) {
+    EnvironmentImages images;
+    // Kept, for the frames of a film: the decoder's process is to be forked before there are threads.
+    static std::mutex mutex;
+    static std::map<std::string, std::shared_ptr<const EnvironmentImage>> known;
+    const std::lock_guard lock(mutex);
+    for (const Light& l : lights) {
+        auto& image = known[l.image];
+        if (!image && !l.image.empty()) image = load_environment(l.image);
+        images.push_back(image);
+    }
+    return images;
 }
 
 }  // namespace isoparm

@@ -38,4 +38,9 @@ private:
 /// not twice as wide as high, has no colours, or values that are negative or not finite.
 std::shared_ptr<const EnvironmentImage> load_environment(const std::string& path);
 
+/// One for each of some lights, null for those without an image.
+using EnvironmentImages = std::vector<std::shared_ptr<const EnvironmentImage>>;
+/// Files are read once, and kept as they were while the program runs. To be called first before there are other threads (image_decoder.h).
+EnvironmentImages load_environments(const std::vector<Light>& lights);
+
 }  // namespace isoparm

@@ -26,14 +26,14 @@ double integrated(double roughness, double cosine) {
 }
 
 struct Table {
-    std::array<std::array<double, kSteps + 1>, kSteps + 1> albedo{};  // [roughness][cosine]
+    std::array<std::array<double, kSteps + 1>, kSteps + 1> albedo{};  // [roughness][root of the cosine]: most happens where it is small
     std::array<double, kSteps + 1> mean{};
     Table() {
         for (int r = 0; r <= kSteps; ++r) {
-            for (int c = 0; c <= kSteps; ++c) albedo[r][c] = std::min(1.0, integrated(double(r) / kSteps, double(c) / kSteps));
-            for (int c = 0; c < kSteps; ++c) {  // 2 x (a + b x) over each step
-                const double x0 = double(c) / kSteps, x1 = double(c + 1) / kSteps, a = albedo[r][c], b = albedo[r][c + 1];
-                mean[r] += (x1 - x0) / 3 * (a * (2 * x0 + x1) + b * (x0 + 2 * x1));
+            for (int c = 0; c <= kSteps; ++c) albedo[r][c] = std::min(1.0, integrated(double(r) / kSteps, double(c * c) / (kSteps * kSteps)));
+            for (int c = 0; c < kSteps; ++c) {  // 2 x dx = 4 s^3 ds, times a + b s, over each step of the root s
+                const double s0 = double(c) / kSteps, s1 = double(c + 1) / kSteps, b = (albedo[r][c + 1] - albedo[r][c]) * kSteps, a = albedo[r][c] - b * s0;
+                mean[r] += a * (std::pow(s1, 4) - std::pow(s0, 4)) + 0.8 * b * (std::pow(s1, 5) - std::pow(s0, 5));
             }
         }
     }
@@ -54,7 +54,7 @@ struct Place {
 }  // namespace
 
 double facet_albedo(double roughness, double cosine) {
-    const Place r(roughness), c(cosine);
+    const Place r(roughness), c(std::sqrt(std::max(cosine, 0.0)));
     const auto of = [&](int row) { return c.between(table().albedo[row][c.step], table().albedo[row][c.step + 1]); };
     return r.between(of(r.step), of(r.step + 1));
 }

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
+#include <limits>
 
 #include "camera.h"
 #include "checkpoint.h"
+#include "drawn.h"
 #include "error.h"
 #include "overlay.h"
 #include "paint.h"
@@ -56,9 +57,29 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::unique_ptr<const Lighting> lighting_of(const Scene& scene, const Camera& camera) {
-    if (scene.lighting) return std::make_unique<PathLighting>(*scene.lighting, camera);
-    return std::make_unique<FigureLighting>(camera);
+std::unique_ptr<const Lighting> lighting_of(const Scene& scene, const Camera& camera, const EnvironmentImages& environments, const std::optional<Ground>& ground) {
+    if (scene.lighting) return std::make_unique<PathLighting>(*scene.lighting, camera, environments, ground);
+    return std::make_unique<FigureLighting>(camera, ground);
+}
+
+/// With its height: under everything that is drawn, when the scene does not say.
+std::optional<Ground> ground_of(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced) {
+    std::optional<Ground> ground = scene.ground;
+    if (!ground || ground->height) return ground;
+    double low = std::numeric_limits<double>::infinity();
+    const auto add = [&](const Point& p, double radius) { low = std::min(low, dot(p, ground->up) - radius); };
+    for (const Mesh& mesh : traced.meshes)
+        for (const Point& p : mesh.positions) add(p, 0);
+    const double size = bounding_box(scene).diagonal();
+    for (const SceneObject& o : objects) {
+        const bool tubes = o.kind == SceneObject::Kind::surface && o.boundary && !(o.line.width > 0);
+        const double radius = tubes ? radius_of(o, size) : 0;  // of other things it is counted already
+        if (o.kind != SceneObject::Kind::axes)
+            for (const Point& p : drawn_points(scene, {o})) add(p, radius);
+    }
+    if (!std::isfinite(low)) return {};
+    ground->height = low;
+    return ground;
 }
 
 /// All pixels as where nothing is.
@@ -104,12 +125,13 @@ struct ViewRendering {
     Camera camera = camera_of(view);
     double tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
     TracedScene traced;
-    std::unique_ptr<const Lighting> lighting = lighting_of(scene, camera);
+    std::optional<Ground> ground = ground_of(scene, view.objects, traced);
+    std::unique_ptr<const Lighting> lighting;
     Film film{area, how.samples, how.noise, how.statistics};
-    Tracer tracer{traced, camera, *lighting, how.samples, scene.image.background};
+    Tracer tracer{traced, camera, *lighting, how.samples, scene.image.background, ground};
 
-    ViewRendering(const Scene& s, const View& v, const Area& a, const Quality& q, const std::function<void(double)>& progress)
-        : scene(s), view(v), area(a), how(q), traced(build_traced_scene(scene, view.objects, tolerance, progress, how.exact)) {
+    ViewRendering(const Scene& s, const View& v, const Area& a, const Quality& q, const EnvironmentImages& environments, const std::function<void(double)>& progress)
+        : scene(s), view(v), area(a), how(q), traced(build_traced_scene(scene, view.objects, tolerance, progress, how.exact)), lighting(lighting_of(scene, camera, environments, ground)) {
         for (Thing& thing : traced.things) thing.isolines.width = how.vectors ? 0 : thing.isolines.width * how.pixel;
     }
 
@@ -160,6 +182,7 @@ public:
         if (const double least = kLeastPrinted * options.pixels_per_point; options.vectors && !letter && views_.front().letter < least)
             views_ = views_of(scene, width, height, options.also_fit, least);
         for (View& v : views_) set_points(v.objects, options.pixels_per_point / how_.pixel);
+        if (scene.lighting) environments_ = load_environments(scene.lighting->lights);
         const auto start = std::chrono::steady_clock::now();
         for (std::size_t i = 0; i < views_.size(); ++i) add(views_[i], static_cast<double>(i));
         seconds_mesh_ = seconds_since(start);
@@ -196,7 +219,7 @@ private:
         if (seen.width() <= 0 || seen.height() <= 0) return;
         std::function<void(double)> progress;
         if (options_.progress) progress = [&, before](double fraction) { report(kMeshShare * (before + fraction) / static_cast<double>(views_.size())); };
-        parts_.push_back({seen, std::make_unique<ViewRendering>(scene_, v, Area{seen.x0 - v.x, seen.y0 - v.y, seen.x1 - v.x, seen.y1 - v.y}, how_, progress)});
+        parts_.push_back({seen, std::make_unique<ViewRendering>(scene_, v, Area{seen.x0 - v.x, seen.y0 - v.y, seen.x1 - v.x, seen.y1 - v.y}, how_, environments_, progress)});
     }
     std::vector<Film*> films() const {
         std::vector<Film*> all;
@@ -284,6 +307,7 @@ private:
     int width_, height_;
     Area area_;
     Quality how_{};
+    EnvironmentImages environments_;
     std::vector<View> views_;
     std::vector<Part> parts_;
     double reached_ = 0, now_ = 0, expected_ = 0, seconds_mesh_ = 0;

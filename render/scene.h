@@ -176,6 +176,7 @@ struct Scene {
     CameraSettings camera;
     ImageSettings image;
     std::optional<LightingSettings> lighting;  // none: the figures' own
+    std::optional<Ground> ground;
     Tolerance tolerance;
     std::vector<std::string> notes;  // what was done to definitions, each with its place
     std::vector<std::string> included;  // paths of the files that it names and that were read

@@ -212,7 +212,7 @@ Surface finished(const std::string& name, const std::string& type, BuiltSurface 
 }
 
 Scene read_scene(const Json& root, const std::map<std::string, double>& overrides) {
-    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "panels", "layout", "camera", "image", "lighting", "tessellation"});
+    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "panels", "layout", "camera", "image", "lighting", "ground", "tessellation"});
     check_version(root);
     SceneValues values;
     Scene scene;
@@ -253,6 +253,10 @@ Scene read_scene(const Json& root, const std::map<std::string, double>& override
     if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera, values);
     if (const auto image = root.find("image")) scene.image = read_image(*image, values);
     if (const auto lighting = root.find("lighting")) scene.lighting = read_lighting(*lighting, values);
+    if (const auto ground = root.find("ground")) scene.ground = read_ground(*ground, values);
+    if (scene.lighting)
+        for (const Light& l : scene.lighting->lights)
+            if (!l.image.empty()) scene.included.push_back(l.image);
     if (const auto tessellation = root.find("tessellation")) scene.tolerance = read_tolerance(*tessellation, values);
     return scene;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <thread>
 
 namespace isoparm {
@@ -32,8 +33,17 @@ void Tracer::sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* sp
 
 Rgba Tracer::resolved(const PixelSum& sum) const {
     Rgba mean{sum.color / double(sum.used), sum.alpha / sum.used};
-    if (background_) mean.add_behind(*background_, 1);
-    return mean;
+    return finished(mean);
+}
+
+Rgba Tracer::finished(Rgba pixel) const {
+    if (background_) {
+        pixel.add_behind(*background_, 1);
+    } else if (ground_) {  // shadows are not quite grey: the same over white, without colours below zero
+        const double lift = std::max({0.0, -pixel.alpha, -pixel.color.x, -pixel.color.y, -pixel.color.z});
+        pixel.color += Color{lift, lift, lift}, pixel.alpha = std::min(1.0, pixel.alpha + lift);
+    }
+    return pixel;
 }
 
 Rgba Tracer::glance(double x, double y) const {
@@ -41,8 +51,7 @@ Rgba Tracer::glance(double x, double y) const {
     const Ray ray = camera_.ray(x, y);
     Rgba seen;
     trace(sampler, &ray, 0, 1, &seen);
-    if (background_) seen.add_behind(*background_, 1);
-    return seen;
+    return finished(seen);
 }
 
 void Tracer::trace(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba* seen) const {
@@ -51,15 +60,58 @@ void Tracer::trace(const PixelSampler& sampler, const Ray* rays, int first, int 
         std::vector<Hit> hits;
         for (int i = 0; i < n; ++i) {
             scene_.embree->layers(rays[i], hits);
+            if (const auto ground = ground_hit(rays[i], std::numeric_limits<double>::infinity())) {
+                while (!hits.empty() && hits.back().distance >= ground->distance) hits.pop_back();
+                const bool open = hits.empty() || scene_.things[hits.back().geometry].opacity < 1;
+                if (open) hits.push_back(*ground);
+            }
             for (std::size_t k = 0; k < hits.size(); ++k) met.push_back({hits[k], i, static_cast<int>(k)});
         }
     } else {
         Hit hits[EmbreeScene::packet];
         scene_.embree->intersect(rays, n, hits);
-        for (int i = 0; i < n; ++i)
-            if (hits[i].found()) met.push_back({hits[i], i, 0});
+        for (int i = 0; i < n; ++i) {
+            if (const auto ground = ground_hit(rays[i], hits[i].distance)) met.push_back({*ground, i, 0});
+            else if (hits[i].found()) met.push_back({hits[i], i, 0});
+        }
     }
     add_light(sampler, rays, first, met, seen);
+    for (int i = 0; i < n; ++i)
+        if (const auto behind = lighting_.backdrop(rays[i].direction)) seen[i].add_behind(*behind, 1);
+}
+
+std::optional<Hit> Tracer::ground_hit(const Ray& ray, double end) const {
+    if (!ground_) return {};
+    Hit hit;
+    hit.distance = ground_->meet(ray.origin, ray.direction);
+    if (!(hit.distance >= 0 && hit.distance < end)) return {};
+    return hit;
+}
+
+Surfel Tracer::ground_surfel(const Ray& ray, double distance) const {
+    Surfel s;
+    s.ground = true;
+    s.view = -ray.direction;
+    s.position = ray.origin + distance * ray.direction;
+    s.normal = s.shading = s.geometric = ground_->up;
+    const double clear = 4e-6 * scene_.embree->radius();
+    s.origin = s.position + clear * s.normal, s.beneath = s.position - clear * s.normal;
+    s.color = {1, 1, 1};
+    s.material = &paper_;
+    return s;
+}
+
+void Tracer::surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const {
+    Ray by[EmbreeScene::packet];
+    Hit found[EmbreeScene::packet];
+    Surfel some[EmbreeScene::packet];
+    int who[EmbreeScene::packet], count = 0;
+    for (int k = 0; k < n; ++k) {
+        if (hits[k].found()) who[count] = k, by[count] = rays[k], found[count++] = hits[k];
+        else out[k] = ground_surfel(rays[k], hits[k].distance);
+    }
+    surfels_at(scene_, camera_, by, found, count, some);
+    for (int k = 0; k < count; ++k) out[who[k]] = some[k];
 }
 
 /// Layers of a ray come from front to back.
@@ -70,7 +122,8 @@ void Tracer::add_light(const PixelSampler& sampler, const Ray* rays, int first, 
         Hit hits[EmbreeScene::packet];
         for (int k = 0; k < count; ++k) by[k] = rays[met[begin + k].ray], hits[k] = met[begin + k].hit;
         Surfel surfels[EmbreeScene::packet];
-        surfels_at(scene_, camera_, by, hits, count, surfels);
+        if (ground_) this->surfels(by, hits, count, surfels);
+        else surfels_at(scene_, camera_, by, hits, count, surfels);
         for (int k = 0; k < count; ++k) {
             surfels[k].sample = first + met[begin + k].ray;
             surfels[k].dimension = 1 + lighting_.dimensions() * met[begin + k].layer;
@@ -79,6 +132,12 @@ void Tracer::add_light(const PixelSampler& sampler, const Ray* rays, int first, 
         lighting_.shade(scene_, sampler, surfels, count, light);
         for (int k = 0; k < count; ++k) {
             Rgba& pixel = seen[met[begin + k].ray];
+            if (surfels[k].ground) {  // white times 1 + light: what is lacking hides, what has a colour is added
+                const Color shade = ground_->shadow * light[k];
+                const double grey = (shade.x + shade.y + shade.z) / 3, open = 1 - pixel.alpha;
+                pixel.color += open * (shade - Color{grey, grey, grey}), pixel.alpha -= open * grey;
+                continue;
+            }
             if (surfels[k].ink_cover > 0) pixel.add_behind(surfels[k].ink, surfels[k].ink_cover);
             pixel.add_behind(light[k], surfels[k].opacity);
         }

@@ -22,8 +22,9 @@ struct Rgba {
 /// Immutable; safe to use from every thread. All that it is given must live as long.
 class Tracer {
 public:
-    Tracer(const TracedScene& scene, const Camera& camera, const Lighting& lighting, int samples, const std::optional<Color>& background)
-        : scene_(scene), camera_(camera), lighting_(lighting), samples_(samples), background_(background) {}
+    /// `ground`: with its height, as the lighting knows it.
+    Tracer(const TracedScene& scene, const Camera& camera, const Lighting& lighting, int samples, const std::optional<Color>& background, const std::optional<Ground>& ground)
+        : scene_(scene), camera_(camera), lighting_(lighting), samples_(samples), background_(background), ground_(ground) {}
 
     /// Traces samples of the pixel up to number `to`, in packets that begin at multiples of EmbreeScene::packet; between them it may end early when
     /// `stop` says so. `counts`: they are added to the sums. `spread` may be nullptr.
@@ -34,11 +35,16 @@ public:
     Rgba glance(double x, double y) const;
 
 private:
-    /// What a ray of the pixel met, and as which of its layers.
+    /// What a ray of the pixel met, and as which of its layers; a hit that is none is of the ground, at its distance.
     struct Met {
         Hit hit;
         int ray, layer;
     };
+    Rgba finished(Rgba pixel) const;
+    /// What a ray meets of the ground before `end`.
+    std::optional<Hit> ground_hit(const Ray& ray, double end) const;
+    Surfel ground_surfel(const Ray& ray, double distance) const;
+    void surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const;
     void trace(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba* seen) const;
     void add_light(const PixelSampler& sampler, const Ray* rays, int first, const std::vector<Met>& met, Rgba* seen) const;
 
@@ -48,6 +54,8 @@ private:
     PixelFilter filter_;
     int samples_;
     std::optional<Color> background_;
+    std::optional<Ground> ground_;
+    Material paper_{Material::Kind::diffuse};
 };
 
 /// Traces the round of the film, tile by tile, until it is made or `stop` says so; `progress` gets the samples traced since, from the calling

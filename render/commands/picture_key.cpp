@@ -24,6 +24,8 @@ std::string instructions() {
     return isa;
 }
 
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // images are larger than scenes
+
 std::string text_of(const Tolerance& t) { return std::to_string(static_cast<int>(t.unit)) + ":" + to_text(t.value); }
 
 }  // namespace
@@ -31,7 +33,7 @@ std::string text_of(const Tolerance& t) { return std::to_string(static_cast<int>
 std::string picture_key(const Scene& scene, const RenderOptions& how, const Options& options) {
     std::ostringstream key;
     key << "program " << program_version() << ", " << compiler_name() << "\nprocessor " << instructions() << "\nscene " << sha256(read_text_file(scene.path)) << "\n";
-    for (std::size_t i = 0; i < scene.included.size(); ++i) key << "included-file-" << i + 1 << " " << sha256(read_text_file(scene.included[i])) << "\n";
+    for (std::size_t i = 0; i < scene.included.size(); ++i) key << "included-file-" << i + 1 << " " << sha256(read_text_file(scene.included[i], kMostBytes)) << "\n";
     for (const auto& [name, value] : scene.parameters) key << "parameter-" << name << " " << to_text(value) << "\n";
     if (const auto camera = options.value("--camera")) key << "camera-file " << sha256(read_text_file(*camera)) << "\n";
     key << "size " << (how.width ? how.width : scene.image.width) << "x" << (how.height ? how.height : scene.image.height) << "\n";
