@@ -121,7 +121,7 @@ void PauseTimer::spend(const std::function<void()>& work) {
     const auto start = Clock::now();
     work();
     const auto now = Clock::now();
-    next_ = now + std::max(duration(std::max(seconds_, 0.5)), std::chrono::duration_cast<Clock::duration>(share_ * (now - start)));
+    next_ = now + std::max(duration(seconds_ > 0 ? seconds_ : 0.5), std::chrono::duration_cast<Clock::duration>(share_ * (now - start)));
 }
 
 CheckpointTimer::CheckpointTimer(const Checkpoint& checkpoint, std::vector<Film*> films)

@@ -10,7 +10,7 @@
 namespace isoparm {
 namespace {
 
-constexpr int kSteps = 32, kSamples = 512;
+constexpr int kSteps = 32, kRoughSteps = 32, kSamples = 2048;
 
 /// What comes back on average when facets are chosen as they are seen: the part of them that is not hidden from where it goes.
 double integrated(double roughness, double cosine) {
@@ -26,11 +26,11 @@ double integrated(double roughness, double cosine) {
 }
 
 struct Table {
-    std::array<std::array<double, kSteps + 1>, kSteps + 1> albedo{};  // [roughness][root of the cosine]: most happens where it is small
-    std::array<double, kSteps + 1> mean{};
+    std::array<std::array<double, kSteps + 1>, kRoughSteps + 1> albedo{};  // [roughness][root of the cosine]: most happens where it is small
+    std::array<double, kRoughSteps + 1> mean{};
     Table() {
-        for (int r = 0; r <= kSteps; ++r) {
-            for (int c = 0; c <= kSteps; ++c) albedo[r][c] = std::min(1.0, integrated(double(r) / kSteps, double(c * c) / (kSteps * kSteps)));
+        for (int r = 0; r <= kRoughSteps; ++r) {
+            for (int c = 0; c <= kSteps; ++c) albedo[r][c] = std::min(1.0, integrated(double(r) / kRoughSteps, double(c * c) / (kSteps * kSteps)));
             for (int c = 0; c < kSteps; ++c) {  // 2 x dx = 4 s^3 ds, times a + b s, over each step of the root s
                 const double s0 = double(c) / kSteps, s1 = double(c + 1) / kSteps, b = (albedo[r][c + 1] - albedo[r][c]) * kSteps, a = albedo[r][c] - b * s0;
                 mean[r] += a * (std::pow(s1, 4) - std::pow(s0, 4)) + 0.8 * b * (std::pow(s1, 5) - std::pow(s0, 5));
@@ -47,19 +47,19 @@ const Table& table() {
 struct Place {
     int step;
     double rest;
-    explicit Place(double x) : step(std::clamp(static_cast<int>(x * kSteps), 0, kSteps - 1)), rest(std::clamp(x * kSteps - step, 0.0, 1.0)) {}
+    Place(double x, int steps) : step(std::clamp(static_cast<int>(x * steps), 0, steps - 1)), rest(std::clamp(x * steps - step, 0.0, 1.0)) {}
     double between(double a, double b) const { return a + rest * (b - a); }
 };
 
 }  // namespace
 
 double facet_albedo(double roughness, double cosine) {
-    const Place r(roughness), c(std::sqrt(std::max(cosine, 0.0)));
+    const Place r(roughness, kRoughSteps), c(std::sqrt(std::max(cosine, 0.0)), kSteps);
     const auto of = [&](int row) { return c.between(table().albedo[row][c.step], table().albedo[row][c.step + 1]); };
     return r.between(of(r.step), of(r.step + 1));
 }
 double mean_facet_albedo(double roughness) {
-    const Place r(roughness);
+    const Place r(roughness, kRoughSteps);
     return r.between(table().mean[r.step], table().mean[r.step + 1]);
 }
 

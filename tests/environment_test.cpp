@@ -217,7 +217,8 @@ TEST(Ground, ShadowsAreAsDarkAsGeometrySays) {
     const TemporaryFolder folder;
     const auto alpha = [&](const std::string& object, const std::string& lighting, const std::string& ground = R"({"height": 0})", const char* background = "transparent") {
         write_all(folder / "s.json", scene_text(object, kAtTheMiddle + R"("image": {"width": 3, "height": 3, "samples": 1024, "background": ")" + background + R"("}, "ground": )" + ground + R"(, "lighting": )" + lighting));
-        const Image image = rendered(folder / "s.json");
+        const bool decodes = lighting.find("sky.exr") != std::string::npos;
+        const Image image = decodes ? rendered(folder / "s.json") : render(load_scene(folder / "s.json"), {}).image;
         return std::array{double(middle(image)[3]), double(middle(image)[1])};
     };
     const std::string black = R"({"point": [0,0,3], "radius": 1, "color": "black", "material": "diffuse"})", white = R"({"point": [0,0,3], "radius": 1, "color": "white", "material": "diffuse"})";
