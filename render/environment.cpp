@@ -44,6 +44,7 @@ EnvironmentImage::EnvironmentImage(int width, int height, std::vector<float> rgb
         if (sums[width_] > 0)
             for (int x = 0; x <= width_; ++x) sums[x] /= sums[width_];
     }
+    brightest_sky_ = 16 * row_.back() / (2 * width_);
     if (const double all = row_.back(); all > 0)
         for (double& r : row_) r /= all;
 }
@@ -65,6 +66,11 @@ Vec3<double> EnvironmentImage::radiance(const Point& direction) const {
             sum += ((dx ? fx : 1 - fx) * (dy ? fy : 1 - fy)) * Vec3<double>{c[0], c[1], c[2]};
         }
     return sum;
+}
+
+double EnvironmentImage::sky_part(const Vec3<double>& c) const {
+    const double grey = (c.x + c.y + c.z) / 3;
+    return grey > brightest_sky_ ? brightest_sky_ / grey : 1;
 }
 
 /// The probability of a pixel.

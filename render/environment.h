@@ -16,6 +16,9 @@ public:
     EnvironmentImage(int width, int height, std::vector<float> rgb);
     Vec3<double> radiance(const Point& direction) const;
 
+    /// The part of radiances that belongs to a sky, and not to a sun in it: all but what is more than 16 times the mean.
+    double sky_part(const Vec3<double>& radiance) const;
+
     struct Sample {
         Point direction;
         double density = 0;  // over solid angle; 0: the image is black
@@ -30,6 +33,7 @@ private:
     double part(int x, int y) const;
     Vec2 place(const Point& direction) const;
     int width_, height_;
+    double brightest_sky_ = 0;
     std::vector<float> rgb_;
     std::vector<double> row_, in_row_;  // cumulative: rows, and pixels within each row, from 0 to 1
 };

@@ -103,8 +103,9 @@ Lights::Sample Lights::sample(const Lamp& l, const Point& from, const Vec2& s) c
         if (!(found.density > 0)) return {};
         r.direction = l.from_image(found.direction);
         r.density = found.density;
-        r.radiance = product(l.power, l.image->radiance(found.direction)) / r.density;
-        r.sky = true;
+        const Color radiance = l.image->radiance(found.direction);
+        r.radiance = product(l.power, radiance) / r.density;
+        r.sky = l.image->sky_part(radiance);
         return r;
     }
     if (l.kind == Kind::directional && l.radius == 0) {
@@ -176,8 +177,12 @@ double Lights::density(const Lamp& l, const Point& from, const Point& d, double 
 Lights::Color Lights::met(const Ray& ray, double end, double chosen, bool sky) const {
     Color sum;
     for (const Lamp& l : sampled_) {
-        if ((l.image != nullptr) != sky) continue;
-        const Meeting m = meet(l, ray.origin, ray.direction);
+        if (sky && !l.image) continue;
+        Meeting m = meet(l, ray.origin, ray.direction);
+        if (l.image) {
+            const double part = l.image->sky_part(l.image->radiance(l.to_image(ray.direction)));
+            m.radiance = (sky ? part : 1 - part) * m.radiance;
+        }
         if (!(m.distance > 0) || (std::isfinite(end) && m.distance >= end)) continue;
         const double other = chosen > 0 ? density(l, ray.origin, ray.direction, m.distance) / double(sampled_.size()) : 0;
         sum += (chosen > 0 ? chosen * chosen / (chosen * chosen + other * other) : 1) * m.radiance;
@@ -188,6 +193,16 @@ Lights::Color Lights::met(const Ray& ray, double end, double chosen, bool sky) c
 Lights::Color Lights::sky(const Point& direction) const {
     Color sum;
     for (const Lamp& l : skies_) sum += meet(l, {}, direction).radiance;
+    return sum;
+}
+
+Lights::Color Lights::behind(const Ray& ray, double chosen) const {
+    Color sum;
+    for (const Lamp& l : sampled_) {
+        if (!l.image) continue;
+        const double other = density(l, ray.origin, ray.direction, kFar) / double(sampled_.size());
+        sum += (chosen * chosen / (chosen * chosen + other * other)) * meet(l, ray.origin, ray.direction).radiance;
+    }
     return sum;
 }
 

@@ -19,14 +19,16 @@ public:
         double distance = 0;
         Color radiance;      // over the density, that of choosing the light counted
         double density = 0;  // over solid angle, likewise; 0: of one direction only, which nothing else finds
-        bool sky = false;    // of an environment
+        double sky = 0;      // the part of the radiance that is of a sky
     };
     /// None that shines on `from`: radiance 0. `pick` in [0,1) chooses the light.
     Sample sample(const Point& from, double pick, const Vec2& s) const;
 
-    /// Light that comes along a ray from what sample() finds, environments (`sky`) or other lights, and what it meets before `end`. `density` is that with which the ray
+    /// Light that comes along a ray from what sample() finds, skies (`sky`) or other lights, suns in images among them, and what it meets before `end`. `density` is that with which the ray
     /// was chosen over solid angle: what sample() finds as well counts in part (Veach's power heuristic); 0: it does not.
     Color met(const Ray& ray, double end, double density, bool sky) const;
+    /// The light of images alone, skies and suns, as if the ray met nothing; `density` as above.
+    Color behind(const Ray& ray, double density) const;
     /// The light of skies that sample() does not find.
     Color sky(const Point& direction) const;
 

@@ -97,8 +97,9 @@ void PathLighting::ask_lights(Batch& batch) const {
         const Point out = frame.to_local(p.at.view), in = frame.to_local(l.direction);
         if (!(in.z > 0)) continue;
         const double chosen = bsdf.density(out, in), both = l.density * l.density + chosen * chosen;
-        const double weight = l.density > 0 && !p.at.ground ? l.density * l.density / both : 1;
-        const Color scattered = p.spread && !settings_.caustics && !l.sky ? bsdf.spread(out, in) : bsdf.value(out, in);
+        const double weight = l.density > 0 && !(p.at.ground && !(l.sky > 0)) ? l.density * l.density / both : 1;
+        Color scattered = bsdf.value(out, in);
+        if (p.spread && !settings_.caustics) scattered = l.sky * scattered + (1 - l.sky) * bsdf.spread(out, in);
         arriving[i] = weight * product(product(p.throughput, scattered), l.radiance);
         to_light[i] = {p.at.origin, l.direction, l.distance};
         if (arriving[i].x + arriving[i].y + arriving[i].z > 0) active |= 1u << i;
@@ -156,8 +157,8 @@ void PathLighting::follow(Batch& batch) const {
     for (int i = 0; i < batch.n; ++i) {
         Path& p = batch.paths[i];
         p.ended = !hits[i].found();
-        if (p.at.ground) {  // lights were asked for already; what hides the sky takes its light away
-            if (!p.ended) p.light += -1 * product(p.throughput, lights_.sky(p.ray.direction));
+        if (p.at.ground) {  // lamps were asked for already; what hides the sky takes its light away
+            if (!p.ended) p.light += -1 * product(p.throughput, lights_.sky(p.ray.direction) + lights_.behind(p.ray, p.density));
         } else {
             p.light += product(p.to_lamps, lights_.met(p.ray, hits[i].distance, p.density, false));
             if (p.ended) p.light += product(p.throughput, lights_.sky(p.ray.direction) + lights_.met(p.ray, hits[i].distance, p.density, true));
