@@ -40,7 +40,7 @@ void put_curvature(const Seen& seen, float* out) {
 }
 
 /// `out` holds zeros.
-void put(Aov aov, const Seen& seen, float patch, const Color& variance, float* out) {
+void put(Aov aov, const Seen& seen, float patch, const PixelSamples& samples, float* out) {
     const bool some = seen.thing, on_patch = some && seen.thing->patch;
     switch (aov) {
         case Aov::n: return some ? put(seen.surfel.shading, out) : void();
@@ -48,7 +48,9 @@ void put(Aov aov, const Seen& seen, float patch, const Color& variance, float* o
         case Aov::p: return some ? put(seen.surfel.position, out) : void();
         case Aov::albedo: return some ? put(albedo(seen.surfel), out) : void();
         case Aov::curvature: return put_curvature(seen, out);
-        case Aov::variance: return put(variance, out);
+        case Aov::variance: return put(samples.variance, out);
+        case Aov::sample_variance: return put(samples.sample_variance, out);
+        case Aov::samples: *out = static_cast<float>(samples.count); return;
         case Aov::uv:
             if (on_patch) out[0] = finite_float(seen.surfel.at.x), out[1] = finite_float(seen.surfel.at.y);
             return;
@@ -74,8 +76,14 @@ const std::vector<AovKind>& all_aovs() {
                                           {Aov::triangle, "triangle", {"triangle.I"}},
                                           {Aov::curvature, "curvature", {"curvature.gaussian", "curvature.mean"}},
                                           {Aov::error, "error", {"error.V"}},
-                                          {Aov::variance, "variance", {"variance.R", "variance.G", "variance.B"}}};
+                                          {Aov::variance, "variance", {"variance.R", "variance.G", "variance.B"}},
+                                          {Aov::sample_variance, "sample_variance", {"sample_variance.R", "sample_variance.G", "sample_variance.B"}},
+                                          {Aov::samples, "samples", {"samples.I"}}};
     return all;
+}
+
+bool uses_statistics(const std::vector<Aov>& aovs) {
+    return std::any_of(aovs.begin(), aovs.end(), [](Aov a) { return a == Aov::variance || a == Aov::sample_variance; });
 }
 
 std::vector<std::string> channels_of(const std::vector<Aov>& aovs) {
@@ -125,7 +133,7 @@ AovReader::AovReader(const Scene& scene, const TracedScene& traced, const Camera
     }
 }
 
-void AovReader::read(int x, int y, const Color& variance, float* out) const {
+void AovReader::read(int x, int y, const PixelSamples& samples, float* out) const {
     std::fill(out, out + channels_, 0.0f);
     const Ray ray = camera_.ray(x + 0.5, y + 0.5);
     const Hit hit = traced_.embree->first(ray);
@@ -138,7 +146,7 @@ void AovReader::read(int x, int y, const Color& variance, float* out) const {
         seen.error = hit.error;
     }
     for (const Aov a : aovs_) {
-        put(a, seen, hit.found() ? patch_[hit.geometry] : kAovNone, variance, out);
+        put(a, seen, hit.found() ? patch_[hit.geometry] : kAovNone, samples, out);
         out += size_of(a);
     }
 }

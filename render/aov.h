@@ -1,6 +1,6 @@
 // aov.h -- what a picture may carry beside its colours (arbitrary output variables): normals, depth, ids ...
 //
-// All but the variance belong to one ray through the middle of the pixel and the nearest thing that it meets, whatever
+// All but what is told of the samples belong to one ray through the middle of the pixel and the nearest thing that it meets, whatever
 // that thing's opacity: nothing is filtered, so ids, parameters and positions of a pixel belong together. Labels and flat
 // lines, which are painted over the picture, are not in them. No value is NaN or infinite.
 #pragma once
@@ -12,7 +12,14 @@
 
 namespace isoparm {
 
-enum class Aov { n, ng, p, uv, albedo, z, patch, triangle, curvature, error, variance };
+enum class Aov { n, ng, p, uv, albedo, z, patch, triangle, curvature, error, variance, sample_variance, samples };
+
+/// What is told of the samples of a pixel.
+struct PixelSamples {
+    Color variance;          // of each
+    Color sample_variance;   // of their mean
+    int count = 0;
+};
 
 struct AovKind {
     Aov aov;
@@ -32,8 +39,7 @@ public:
     /// triangles than a float32 can number.
     AovReader(const Scene& scene, const TracedScene& traced, const Camera& camera, std::vector<Aov> aovs);
     std::size_t channels() const { return channels_; }
-    /// `variance`: of the samples of pixel (x,y), for each colour.
-    void read(int x, int y, const Color& variance, float* out) const;
+    void read(int x, int y, const PixelSamples& samples, float* out) const;
 
 private:
     const TracedScene& traced_;
@@ -43,6 +49,8 @@ private:
     std::size_t channels_ = 0;
 };
 
+/// Do any of them need the variance of samples?
+bool uses_statistics(const std::vector<Aov>& aovs);
 /// Their channels, one after the other.
 std::vector<std::string> channels_of(const std::vector<Aov>& aovs);
 /// What each pixel has where nothing is.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "facet_albedo.h"
+#include "ggx.h"
 #include "local_frame.h"
 
 namespace isoparm {
@@ -13,28 +15,6 @@ using Color = Bsdf::Color;
 constexpr double kPi = std::numbers::pi;
 
 double max_of(const Color& c) { return std::max({c.x, c.y, c.z}); }
-
-/// GGX: density of micro-normals, and what part of them is seen (Walter et al. 2007).
-double facets(const Point& h, double alpha) {
-    const double a = alpha * alpha, d = h.z * h.z * (a - 1) + 1;
-    return a / (kPi * d * d);
-}
-double lambda(const Point& w, double alpha) {
-    const double t = (w.x * w.x + w.y * w.y) / (w.z * w.z);
-    return 0.5 * (std::sqrt(1 + alpha * alpha * t) - 1);
-}
-double seen(const Point& w, double alpha) { return 1 / (1 + lambda(w, alpha)); }
-
-/// A micro-normal in proportion to what `out` sees of it (Heitz, JCGT 2018).
-Point seen_facet(const Point& out, double alpha, const Vec2& s) {
-    const Point v = normalized(Point{alpha * out.x, alpha * out.y, out.z});
-    const double across = v.x * v.x + v.y * v.y;
-    const Point t1 = across > 0 ? Point{-v.y, v.x, 0} / std::sqrt(across) : Point{1, 0, 0}, t2 = cross(v, t1);
-    const Vec2 d = on_disc(s);
-    const double half = 0.5 * (1 + v.z), y = (1 - half) * std::sqrt(std::max(0.0, 1 - d.x * d.x)) + half * d.y;
-    const Point n = d.x * t1 + y * t2 + std::sqrt(std::max(0.0, 1 - d.x * d.x - y * y)) * v;
-    return normalized(Point{alpha * n.x, alpha * n.y, std::max(1e-9, n.z)});
-}
 
 Color schlick(const Color& at_right_angles, double cosine) {
     const double rest = std::pow(1 - std::clamp(cosine, 0.0, 1.0), 5);
@@ -58,7 +38,7 @@ double mean_fresnel(double n) {  // Walsh 1926, as in Duntley, The Optical Prope
 
 Bsdf::Bsdf(const Material& material, const Color& color, bool inside)
     : material_(material), color_(color), inside_(inside), alpha_(std::max(1e-3, material.roughness * material.roughness)) {
-    if (material.kind == Material::Kind::metal) coat_share_ = 1;
+    if (material.kind == Material::Kind::metal) coat_share_ = mean_facet_albedo(material.roughness);
     if (material.kind == Material::Kind::plastic) {
         const double mean = mean_fresnel(material.ior), coat = mean + 0.1, base = 0.9 * max_of(color);
         coat_share_ = coat / (coat + base);
@@ -71,7 +51,20 @@ Color Bsdf::coat(const Point& out, const Point& in) const {
     const Point h = normalized(out + in);
     const double c = dot(out, h);
     const double shape = facets(h, alpha_) / ((1 + lambda(out, alpha_) + lambda(in, alpha_)) * 4 * out.z);  // the cosine of `in` cancels
-    return material_.kind == Material::Kind::metal ? shape * schlick(color_, c) : (shape * fresnel(c, material_.ior)) * Color{1, 1, 1};
+    return material_.kind == Material::Kind::metal ? shape * schlick(color_, c) + between_facets(out, in) : (shape * fresnel(c, material_.ior)) * Color{1, 1, 1};
+}
+
+/// What a metal's facets throw at each other before it leaves: as much as single reflections lack, the same for all pairs of directions but for how
+/// much each lacks (Kulla and Conty, Revisiting Physically Based Shading at Imageworks, SIGGRAPH 2017 course).
+Color Bsdf::between_facets(const Point& out, const Point& in) const {
+    const double mean = mean_facet_albedo(material_.roughness), lost = 1 - mean;
+    if (lost < 1e-4) return {};
+    const double shape = (1 - facet_albedo(material_.roughness, out.z)) * (1 - facet_albedo(material_.roughness, in.z)) / (kPi * lost) * in.z;
+    const auto one = [&](double at_right_angles) {
+        const double f = at_right_angles + (1 - at_right_angles) / 21;  // Schlick's approximation on average over the cosine
+        return f * f * mean / (1 - f * lost);
+    };
+    return shape * Color{one(color_.x), one(color_.y), one(color_.z)};
 }
 
 Color Bsdf::base(const Point& out, const Point& in) const {
@@ -110,7 +103,7 @@ Bsdf::Sample Bsdf::sample(const Point& out, double lobe, const Vec2& s) const {
         r.direction = 2 * dot(out, h) * h - out;
     } else {
         r.direction = on_hemisphere(s);
-        r.spread = true;
+        r.spread = material_.kind != Material::Kind::metal;
     }
     r.density = density(out, r.direction);
     if (r.direction.z <= 0 || !(r.density > 0)) return {};

@@ -33,6 +33,7 @@ public:
 private:
     double coat_density(const Point& out, const Point& in) const;
     Color coat(const Point& out, const Point& in) const;
+    Color between_facets(const Point& out, const Point& in) const;
     Color base(const Point& out, const Point& in) const;
     Sample refracted(const Point& out, double lobe) const;
 

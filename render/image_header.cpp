@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cctype>
 #include <cstdlib>
 
@@ -184,6 +185,24 @@ void pnm(ImageHeader& h, Reader& r) {
     add(h, r, size[0], size[1], 3);
 }
 
+/// Radiance's format: lines of text up to an empty one, then "-Y height +X width".
+void hdr(ImageHeader& h, Reader& r) {
+    const auto line = [&] {
+        std::string text;
+        for (char c; (c = static_cast<char>(r.u8())) != '\n';) {
+            if (text.size() >= 4096) r.fail("found a line of more than 4096 characters in the header");
+            text += c;
+        }
+        return text;
+    };
+    while (!line().empty()) {}
+    const std::string size = line();
+    int height = 0, width = 0, end = 0;
+    if (std::sscanf(size.c_str(), "-Y %9d +X %9d%n", &height, &width, &end) != 2 || end != static_cast<int>(size.size()))
+        r.fail("found no line \"-Y height +X width\" after the header; other orders of rows and columns are not read");
+    add(h, r, width, height, 3);
+}
+
 void tga(ImageHeader& h, Reader& r) {
     r.at = 1;
     const std::uint64_t palette = r.u8(), type = r.u8();
@@ -203,6 +222,7 @@ std::string format_of_bytes(std::string_view b) {
     if (begins("\xff\xd8\xff"sv)) return "jpeg";
     if (begins("II*\0"sv) || begins("MM\0*"sv) || begins("II+\0"sv) || begins("MM\0+"sv)) return "tiff";
     if (begins("BM"sv)) return "bmp";
+    if (begins("#?RADIANCE\n"sv) || begins("#?RGBE\n"sv)) return "hdr";
     if (begins("P6"sv) || begins("P5"sv)) return "pnm";
     return "";
 }
@@ -211,7 +231,7 @@ std::string format_of_bytes(std::string_view b) {
 
 const std::vector<std::pair<std::string, std::string>>& readable_formats() {
     static const std::vector<std::pair<std::string, std::string>> all{{"exr", "openexr"}, {"png", "png"},   {"tif", "tiff"}, {"tiff", "tiff"}, {"tga", "targa"},
-                                                                      {"jpg", "jpeg"},    {"jpeg", "jpeg"}, {"bmp", "bmp"},  {"ppm", "pnm"},   {"pgm", "pnm"}};
+                                                                      {"jpg", "jpeg"},    {"jpeg", "jpeg"}, {"bmp", "bmp"},  {"ppm", "pnm"},   {"pgm", "pnm"},   {"hdr", "hdr"}};
     return all;
 }
 
@@ -239,6 +259,7 @@ ImageHeader read_image_header(std::string_view bytes, std::uint64_t size, const 
     else if (h.format == "tiff") tiff(h, r, size > bytes.size());
     else if (h.format == "bmp") bmp(h, r);
     else if (h.format == "pnm") pnm(h, r);
+    else if (h.format == "hdr") hdr(h, r);
     else tga(h, r);
     return h;
 }

@@ -1,6 +1,7 @@
 // light.h -- what light comes from and how surfaces scatter it, as a scene says it. Radiances and irradiances are linear RGB.
 #pragma once
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,10 @@ struct Light {
     } kind = Kind::studio;
     Vec3<double> power{1, 1, 1};  // studio: factor; environment, sphere, rectangle: radiance; directional: irradiance at right angles to it
     Point at;                     // sphere: centre; rectangle: corner
-    Point direction;              // directional: unit, toward the light
+    Point direction{0, 0, 1};     // directional: unit, toward the light; environment: unit, up in its image
+    std::string image;            // environment: the path of an image of it (environment.h), times `power`; empty: the same from everywhere
+    double turn = 0;              // radians, about `direction`, of the image
+    bool seen = false;            // environment: by the camera, where nothing is
     double radius = 0;            // sphere: scene units; directional: radians, half the width of the disc, 0 for one direction
     std::array<Point, 2> edges;   // rectangle
 };
@@ -41,6 +45,19 @@ struct LightingSettings {
     int bounces = 8;        // after the first surface; 0: direct light only
     bool caustics = false;  // what lights of some place throw by mirrors and through glass onto other surfaces
     std::vector<Light> lights;
+};
+
+/// A plane that shows the shadow that falls on it, from above; else the picture is as if it were not there. It throws no light onto the scene.
+struct Ground {
+    Point up{0, 0, 1};             // unit
+    std::optional<double> height;  // along `up`, scene units; none: of the lowest point that is drawn
+    double shadow = 1;             // how much of the shadow shows
+
+    /// Where a ray meets it from above; negative: nowhere. With a height.
+    double meet(const Point& origin, const Point& along) const {
+        const double above = dot(origin, up) - *height, down = -dot(along, up);
+        return above > 0 && down > 0 ? above / down : -1;
+    }
 };
 
 }  // namespace isoparm

@@ -40,7 +40,8 @@ isoparm COMMAND --help tells more; --version prints the version.
 Every command knows --quiet and --threads N (or ISOPARM_THREADS). Results go to stdout, messages to stderr.
 
 Exit codes: 0 success, 1 success with a warning, 2 something could not be proved or failed a check, 3 not comparable,
-4 reading or writing failed, 64 usage, 65 bad scene or data, 70 internal error.
+4 reading or writing failed, 64 usage, 65 bad scene or data, 70 internal error, 130 and 143 a picture ended early by SIGINT
+or SIGTERM.
 )";
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "bsdf.h"
 #include "surfel.h"
@@ -56,7 +57,10 @@ struct PathLighting::Batch {
     }
 };
 
-PathLighting::PathLighting(const LightingSettings& settings, const Camera& camera) : settings_(settings), camera_(camera), lights_(settings.lights, camera) {}
+PathLighting::PathLighting(const LightingSettings& settings, const Camera& camera, const EnvironmentImages& images, const std::optional<Ground>& ground)
+    : settings_(settings), camera_(camera), lights_(settings.lights, camera, images) {
+    if (ground) sky_on_ground_ = lights_.sky_irradiance(ground->up);
+}
 
 void PathLighting::shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const {
     Batch batch{scene, sampler, 0, n, {}, {}};
@@ -70,6 +74,12 @@ void PathLighting::shade(const TracedScene& scene, const PixelSampler& sampler, 
             for (int i = 0; i < batch.n; ++i) batch.paths[i].ended = true;
         batch.drop_ended(out);
     }
+    for (int i = 0; i < n; ++i)
+        if (surfels[i].ground) {  // from what it lacks to the part that it lacks
+            const Color all = (1 / std::numbers::pi) * (sky_on_ground_ + lights_.irradiance(surfels[i].origin, surfels[i].normal));
+            const auto part = [](double lacks, double of) { return of > 0 ? lacks / of : 0; };
+            out[i] = {part(out[i].x, all.x), part(out[i].y, all.y), part(out[i].z, all.z)};
+        }
 }
 
 void PathLighting::ask_lights(Batch& batch) const {
@@ -87,15 +97,16 @@ void PathLighting::ask_lights(Batch& batch) const {
         const Point out = frame.to_local(p.at.view), in = frame.to_local(l.direction);
         if (!(in.z > 0)) continue;
         const double chosen = bsdf.density(out, in), both = l.density * l.density + chosen * chosen;
-        const double weight = l.density > 0 ? l.density * l.density / both : 1;
-        const Color scattered = p.spread && !settings_.caustics ? bsdf.spread(out, in) : bsdf.value(out, in);
+        const double weight = l.density > 0 && !(p.at.ground && !(l.sky > 0)) ? l.density * l.density / both : 1;
+        Color scattered = bsdf.value(out, in);
+        if (p.spread && !settings_.caustics) scattered = l.sky * scattered + (1 - l.sky) * bsdf.spread(out, in);
         arriving[i] = weight * product(product(p.throughput, scattered), l.radiance);
         to_light[i] = {p.at.origin, l.direction, l.distance};
         if (arriving[i].x + arriving[i].y + arriving[i].z > 0) active |= 1u << i;
     }
     batch.scene.embree->transmittance(to_light, batch.n, active, part, EmbreeScene::Shadows::physical);
     for (int i = 0; i < batch.n; ++i)
-        if (active >> i & 1) batch.paths[i].light += part[i] * arriving[i];
+        if (active >> i & 1) batch.paths[i].light += (batch.paths[i].at.ground ? part[i] - 1 : part[i]) * arriving[i];
 }
 
 void PathLighting::scatter(Batch& batch) const {
@@ -146,8 +157,12 @@ void PathLighting::follow(Batch& batch) const {
     for (int i = 0; i < batch.n; ++i) {
         Path& p = batch.paths[i];
         p.ended = !hits[i].found();
-        p.light += product(p.to_lamps, lights_.met(p.ray, hits[i].distance, p.density));
-        if (p.ended) p.light += product(p.throughput, lights_.sky(p.ray.direction));
+        if (p.at.ground) {  // lamps were asked for already; what hides the sky takes its light away
+            if (!p.ended) p.light += -1 * product(p.throughput, lights_.sky(p.ray.direction) + lights_.behind(p.ray, p.density));
+        } else {
+            p.light += product(p.to_lamps, lights_.met(p.ray, hits[i].distance, p.density, false));
+            if (p.ended) p.light += product(p.throughput, lights_.sky(p.ray.direction) + lights_.met(p.ray, hits[i].distance, p.density, true));
+        }
         if (!p.ended) who[count] = i, met_by[count] = p.ray, met[count++] = hits[i];
     }
     Surfel surfels[EmbreeScene::packet];

@@ -10,9 +10,11 @@ namespace isoparm {
 /// Immutable; safe to use from every thread. The same light for every number of threads and any order of pixels.
 class PathLighting : public Lighting {
 public:
-    PathLighting(const LightingSettings& settings, const Camera& camera);
+    /// `ground`, if there is one: with its height; its `up` is the normal of surfels that are of it.
+    PathLighting(const LightingSettings& settings, const Camera& camera, const EnvironmentImages& images, const std::optional<Ground>& ground);
     int dimensions() const override { return kDimensions * (settings_.bounces + 1); }
     void shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const override;
+    std::optional<Color> backdrop(const Point& direction) const override { return lights_.backdrop(direction); }
 
 private:
     static constexpr int kDimensions = 4;  // a point: light and lobe; place on the light; direction; end and opacity
@@ -26,6 +28,7 @@ private:
     LightingSettings settings_;
     Camera camera_;
     Lights lights_;
+    Color sky_on_ground_;  // irradiance
 };
 
 }  // namespace isoparm

@@ -1,192 +1,26 @@
 #include "picture.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <thread>
+#include <limits>
 
 #include "camera.h"
+#include "checkpoint.h"
+#include "drawn.h"
 #include "error.h"
 #include "insets.h"
 #include "layout.h"
 #include "overlay.h"
 #include "paint.h"
 #include "path_lighting.h"
-#include "sampler.h"
-#include "shade.h"
-#include "surfel.h"
-#include "traced_scene.h"
+#include "resolve.h"
+#include "tracer.h"
 
 namespace isoparm {
 namespace {
 
-constexpr int kTile = 16;           // pixels a side
 constexpr double kMeshShare = 0.2;  // of the progress bar
 constexpr int kMostSamples = 1 << 16;
-
-struct Rgba {
-    Color color;  // premultiplied
-    double alpha = 0;
-    /// What lies behind, seen through what is here.
-    void add_behind(const Color& c, double opacity) {
-        color += ((1 - alpha) * opacity) * c;
-        alpha += (1 - alpha) * opacity;
-    }
-};
-
-/// Variance of colours, about the first of them, so that equal ones have none.
-class Spread {
-public:
-    void add(const Color& c) {
-        if (n_++ == 0) first_ = c;
-        const Color d = c - first_;
-        sum_ += d;
-        squares_ += Color{d.x * d.x, d.y * d.y, d.z * d.z};
-    }
-    Color variance() const {
-        const auto one = [&](double sum, double squares) { return n_ < 2 ? 0 : std::max(0.0, (squares - sum * sum / n_) / (n_ - 1)); };
-        return {one(sum_.x, squares_.x), one(sum_.y, squares_.y), one(sum_.z, squares_.z)};
-    }
-
-private:
-    Color first_, sum_, squares_;
-    int n_ = 0;
-};
-
-/// What the samples of a pixel come to.
-struct Samples {
-    Rgba sum;
-    Spread spread;
-};
-
-class Tracer {
-public:
-    Tracer(const TracedScene& scene, const Camera& camera, const Lighting& lighting, int samples, const std::optional<Color>& background)
-        : scene_(scene), camera_(camera), lighting_(lighting), samples_(samples), background_(background) {}
-
-    /// The mean of the samples, and the variance of each.
-    Samples pixel(int x, int y) const {
-        const PixelSampler sampler(x, y, samples_);
-        Samples all;
-        for (int first = 0; first < samples_; first += EmbreeScene::packet) {
-            Ray rays[EmbreeScene::packet];
-            const int n = std::min(EmbreeScene::packet, samples_ - first);
-            for (int i = 0; i < n; ++i) {
-                const Vec2 at = filter_(sampler(first + i, 0));
-                rays[i] = camera_.ray(x + 0.5 + at.x, y + 0.5 + at.y);
-            }
-            if (scene_.embree->translucent())
-                add_layers(sampler, rays, first, n, all);
-            else
-                add_nearest(sampler, rays, first, n, all);
-        }
-        all.sum = {all.sum.color / double(samples_), all.sum.alpha / samples_};
-        if (background_) all.sum.add_behind(*background_, 1);
-        return all;
-    }
-
-private:
-    /// What a ray of the pixel met, and as which of its layers.
-    struct Met {
-        Hit hit;
-        int ray, layer;
-    };
-    void add_nearest(const PixelSampler& sampler, const Ray* rays, int first, int n, Samples& all) const {
-        Hit hits[EmbreeScene::packet];
-        scene_.embree->intersect(rays, n, hits);
-        std::vector<Met> met;
-        for (int i = 0; i < n; ++i)
-            if (hits[i].found()) met.push_back({hits[i], i, 0});
-        add_light(sampler, rays, first, n, met, all);
-    }
-    void add_layers(const PixelSampler& sampler, const Ray* rays, int first, int n, Samples& all) const {
-        std::vector<Hit> hits;
-        std::vector<Met> met;
-        for (int i = 0; i < n; ++i) {
-            scene_.embree->layers(rays[i], hits);
-            for (std::size_t k = 0; k < hits.size(); ++k) met.push_back({hits[k], i, static_cast<int>(k)});
-        }
-        add_light(sampler, rays, first, n, met, all);
-    }
-    /// Layers of a ray come from front to back.
-    void add_light(const PixelSampler& sampler, const Ray* rays, int first, int n, const std::vector<Met>& met, Samples& all) const {
-        Rgba seen[EmbreeScene::packet];
-        for (std::size_t begin = 0; begin < met.size(); begin += EmbreeScene::packet) {
-            const int count = static_cast<int>(std::min<std::size_t>(EmbreeScene::packet, met.size() - begin));
-            Ray by[EmbreeScene::packet];
-            Hit hits[EmbreeScene::packet];
-            for (int k = 0; k < count; ++k) by[k] = rays[met[begin + k].ray], hits[k] = met[begin + k].hit;
-            Surfel surfels[EmbreeScene::packet];
-            surfels_at(scene_, camera_, by, hits, count, surfels);
-            for (int k = 0; k < count; ++k) {
-                surfels[k].sample = first + met[begin + k].ray;
-                surfels[k].dimension = 1 + lighting_.dimensions() * met[begin + k].layer;
-            }
-            Color light[EmbreeScene::packet];
-            lighting_.shade(scene_, sampler, surfels, count, light);
-            for (int k = 0; k < count; ++k) add(surfels[k], light[k], seen[met[begin + k].ray]);
-        }
-        for (int i = 0; i < n; ++i) {
-            all.sum.color += seen[i].color;
-            all.sum.alpha += seen[i].alpha;
-            if (background_) seen[i].add_behind(*background_, 1);
-            all.spread.add(seen[i].color);
-        }
-    }
-
-    static void add(const Surfel& s, const Color& light, Rgba& seen) {
-        if (s.ink_cover > 0) seen.add_behind(s.ink, s.ink_cover);
-        seen.add_behind(light, s.opacity);
-    }
-
-    const TracedScene& scene_;
-    const Camera& camera_;
-    const Lighting& lighting_;
-    PixelFilter filter_;
-    int samples_;
-    std::optional<Color> background_;
-};
-
-struct Area {
-    int x0, y0, x1, y1;
-    int width() const { return x1 - x0; }
-    int height() const { return y1 - y0; }
-};
-
-/// Rays against folds and places without area halve boxes again and again: minutes for what others do in a second. Throws Error(budget).
-void check_work(const TracedScene& traced, double most, double done) {
-    constexpr double kMostEach = 20;  // scenes without such places are below 1
-    double halved = 0;
-    for (const ExactPatch& p : traced.patches) halved += static_cast<double>(p.halved());
-    if (const auto rays = static_cast<double>(traced.embree->count().rays); halved > std::max(most, kMostEach * rays))
-        throw Error(ErrorKind::budget, "--exact was given up after " + to_text(std::floor(100 * done)) + " % of the picture: a ray looks at " + to_text(std::round(halved / std::max(1.0, rays))) +
-                                           " pieces of the surfaces, as where they are folded or have no area; render without --exact, or a smaller picture with fewer samples");
-}
-
-/// Calls `progress` from the calling thread only, which works on tiles like the others.
-void trace(const TracedScene& traced, double most_halved, const Tracer& tracer, const AovReader& aovs, const Area& area, const std::function<void(double)>& progress,
-           Picture& picture) {
-    const int across = (area.width() + kTile - 1) / kTile, tiles = across * ((area.height() + kTile - 1) / kTile);
-    const auto caller = std::this_thread::get_id();
-    std::atomic<int> done{0};
-    tbb::parallel_for(0, tiles, [&](int tile) {
-        const int x0 = area.x0 + kTile * (tile % across), y0 = area.y0 + kTile * (tile / across);
-        for (int y = y0; y < std::min(y0 + kTile, area.y1); ++y)
-            for (int x = x0; x < std::min(x0 + kTile, area.x1); ++x) {
-                const Samples p = tracer.pixel(x, y);
-                float* out = picture.image.at(x - area.x0, y - area.y0);
-                for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(p.sum.color[k]);
-                out[3] = static_cast<float>(p.sum.alpha);
-                const std::size_t pixel = static_cast<std::size_t>(y - area.y0) * area.width() + (x - area.x0);
-                if (aovs.channels() > 0) aovs.read(x, y, p.spread.variance(), &picture.layers.values[pixel * aovs.channels()]);
-            }
-        const int now = ++done;
-        check_work(traced, most_halved, static_cast<double>(now) / tiles);
-        if (progress && std::this_thread::get_id() == caller) progress(static_cast<double>(now) / tiles);
-    });
-}
 
 Area checked_area(const RenderOptions& options, int width, int height) {
     if (!options.crop) return {0, 0, width, height};
@@ -216,9 +50,29 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::unique_ptr<const Lighting> lighting_of(const Scene& scene, const Camera& camera) {
-    if (scene.lighting) return std::make_unique<PathLighting>(*scene.lighting, camera);
-    return std::make_unique<FigureLighting>(camera);
+std::unique_ptr<const Lighting> lighting_of(const Scene& scene, const Camera& camera, const EnvironmentImages& environments, const std::optional<Ground>& ground) {
+    if (scene.lighting) return std::make_unique<PathLighting>(*scene.lighting, camera, environments, ground);
+    return std::make_unique<FigureLighting>(camera, ground);
+}
+
+/// With its height: under everything that is drawn, when the scene does not say.
+std::optional<Ground> ground_of(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced) {
+    std::optional<Ground> ground = scene.ground;
+    if (!ground || ground->height) return ground;
+    double low = std::numeric_limits<double>::infinity();
+    const auto add = [&](const Point& p, double radius) { low = std::min(low, dot(p, ground->up) - radius); };
+    for (const Mesh& mesh : traced.meshes)
+        for (const Point& p : mesh.positions) add(p, 0);
+    const double size = bounding_box(scene).diagonal();
+    for (const SceneObject& o : objects) {
+        const bool tubes = o.kind == SceneObject::Kind::surface && o.boundary && !(o.line.width > 0);
+        const double radius = tubes ? radius_of(o, size) : 0;  // of other things it is counted already
+        if (o.kind != SceneObject::Kind::axes)
+            for (const Point& p : drawn_points(scene, {o})) add(p, radius);
+    }
+    if (!std::isfinite(low)) return {};
+    ground->height = low;
+    return ground;
 }
 
 /// All pixels as where nothing is.
@@ -240,9 +94,10 @@ Image blank(int width, int height, const std::optional<Color>& background) {
 
 struct Quality {
     int samples;
+    double noise;
+    bool statistics;  // of the samples of each pixel
     Tolerance tolerance;
     double pixel;  // pixels of this picture to one of the scene's
-    std::vector<Aov> aovs;
     bool exact, vectors;
     double most_halved;
     int grid;
@@ -261,36 +116,41 @@ bool mirrors(const Scene& scene, const std::vector<SceneObject>& objects) {
     return scene.lighting && std::any_of(objects.begin(), objects.end(), [](const SceneObject& o) { return o.material.kind == Material::Kind::metal || o.material.kind == Material::Kind::glass; });
 }
 
-/// The part `area` of a view, in the view's own pixels.
-Picture render_view(const Scene& scene, const View& view, const Area& area, const Quality& how,
-                    const std::function<void(double)>& progress) {
-    const auto part_of_progress = [&](double from, double share) -> std::function<void(double)> {
-        if (!progress) return {};
-        return [&progress, from, share](double fraction) { progress(from + share * fraction); };
-    };
-    const Camera camera = camera_of(view);
-    Picture picture;
-    picture.tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
-    auto start = std::chrono::steady_clock::now();
-    TracedScene traced = build_traced_scene(scene, view.objects, picture.tolerance, part_of_progress(0, kMeshShare), how.exact, how.grid);
-    const bool lines = how.vectors && !mirrors(scene, view.objects);
-    for (Thing& thing : traced.things) thing.isolines.width = lines ? 0 : thing.isolines.width * how.pixel;
-    picture.certified_error = traced.certified_error;
-    picture.triangles = traced.triangles;
-    for (const ExactPatch& p : traced.patches) picture.leaves += p.leaves();
-    picture.seconds_mesh = seconds_since(start);
+/// The part `area` of a view, in the view's own pixels, ready to be traced.
+struct ViewRendering {
+    const Scene& scene;
+    const View& view;
+    Area area;
+    Quality how;
+    Camera camera = camera_of(view);
+    double tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
+    bool lines = how.vectors && !mirrors(scene, view.objects);  // parameter lines are vectors
+    TracedScene traced;
+    std::optional<Ground> ground = ground_of(scene, view.objects, traced);
+    std::unique_ptr<const Lighting> lighting;
+    Film film{area, how.samples, how.noise, how.statistics};
+    Tracer tracer{traced, camera, *lighting, how.samples, scene.image.background, ground};
 
-    start = std::chrono::steady_clock::now();
-    picture.image = blank(area.width(), area.height(), {});
-    picture.layers = blank_layers(area.width(), area.height(), how.aovs);
-    const std::unique_ptr<const Lighting> lighting = lighting_of(scene, camera);
-    trace(traced, how.most_halved, Tracer(traced, camera, *lighting, how.samples, scene.image.background), AovReader(scene, traced, camera, how.aovs), area,
-          part_of_progress(kMeshShare, 1 - kMeshShare), picture);
-    picture.rays = traced.embree->count();
-    put_over(overlay(scene, view.objects, traced, camera, how.pixel, view.letter, lines, {view.inset.has_value(), view.covered}), -area.x0, -area.y0, view.width, view.height, how.vectors, picture);
-    picture.seconds_trace = seconds_since(start);
-    return picture;
-}
+    ViewRendering(const Scene& s, const View& v, const Area& a, const Quality& q, const EnvironmentImages& environments, const std::function<void(double)>& progress)
+        : scene(s), view(v), area(a), how(q), traced(build_traced_scene(scene, view.objects, tolerance, progress, how.exact, how.grid)), lighting(lighting_of(scene, camera, environments, ground)) {
+        for (Thing& thing : traced.things) thing.isolines.width = lines ? 0 : thing.isolines.width * how.pixel;
+    }
+
+    /// As far as it is traced.
+    Picture picture(const std::vector<Aov>& aovs) const {
+        Picture p;
+        p.tolerance = tolerance;
+        p.certified_error = traced.certified_error;
+        p.triangles = traced.triangles;
+        for (const ExactPatch& patch : traced.patches) p.leaves += patch.leaves();
+        p.image = blank(area.width(), area.height(), {});
+        p.layers = blank_layers(area.width(), area.height(), aovs);
+        resolve(tracer, film, AovReader(scene, traced, camera, aovs), area, p.image, p.layers);
+        p.rays = traced.embree->count();
+        put_over(overlay(scene, view.objects, traced, camera, how.pixel, view.letter, lines, {view.inset.has_value(), view.covered}), -area.x0, -area.y0, view.width, view.height, how.vectors, p);
+        return p;
+    }
+};
 
 Area common(const Area& a, const Area& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
@@ -308,50 +168,162 @@ void paste(const Picture& part, int x0, int y0, Picture& whole) {
                     whole.layers.values.data() + channels * (static_cast<std::size_t>(y0 + y) * whole.image.width + x0));
 }
 
+/// Rays against folds and places without area halve boxes again and again: minutes for what others do in a second. Throws Error(budget).
+void check_work(const TracedScene& traced, double most, double done) {
+    constexpr double kMostEach = 20;  // scenes without such places are below 1
+    double halved = 0;
+    for (const ExactPatch& p : traced.patches) halved += static_cast<double>(p.halved());
+    if (const auto rays = static_cast<double>(traced.embree->count().rays); halved > std::max(most, kMostEach * rays))
+        throw Error(ErrorKind::budget, "--exact was given up after " + to_text(std::floor(100 * done)) + " % of the picture: a ray looks at " + to_text(std::round(halved / std::max(1.0, rays))) +
+                                           " pieces of the surfaces, as where they are folded or have no area; render without --exact, or a smaller picture with fewer samples");
+}
+
+/// A picture of one or several views, all of which come to be together, round by round.
+class Rendering {
+public:
+    Rendering(const Scene& scene, const RenderOptions& options) : scene_(scene), options_(options), layout_(layout_of(scene, options)), area_(checked_area(options, layout_.width, layout_.height)) {
+        const double noise = options.noise.value_or(scene.image.noise);
+        const bool statistics = noise > 0 || options.tell_noise || !options.checkpoint.path.empty() || uses_statistics(options.aovs);
+        how_ = {checked_size(options.most_samples(scene.image), "number of samples", kMostSamples), noise, statistics, options.tolerance.value_or(scene.tolerance),
+                layout_.pixel, options.exact, options.vectors, options.most_halved, options.grid};
+        if (scene.lighting) environments_ = load_environments(scene.lighting->lights);
+        const auto start = std::chrono::steady_clock::now();
+        for (std::size_t i = 0; i < layout_.views.size(); ++i) add(layout_.views[i], static_cast<double>(i));
+        seconds_mesh_ = seconds_since(start);
+    }
+
+    Picture run() {
+        const auto start = std::chrono::steady_clock::now();
+        CheckpointTimer checkpoint(options_.checkpoint, films());
+        PauseTimer preview(0, 10);
+        const double before = traced();
+        while (!done()) {
+            if (options_.preview && preview.due()) preview.spend([&] { options_.preview(picture()); });
+            if (checkpoint.due()) checkpoint.save();
+            if (stopped()) break;
+            tell(before, 0);
+            if (const bool whole = trace([&] { return stopped() || checkpoint.due() || (options_.preview && preview.due()); }, before); !whole) continue;
+            for (auto& part : parts_)
+                if (!part.rendering->film.done()) part.rendering->film.next_round();
+        }
+        if (stopped() && !done()) checkpoint.save();
+        Picture all = picture();
+        all.seconds_trace = seconds_since(start);
+        return all;
+    }
+
+private:
+    struct Part {
+        Area seen;  // in the picture
+        std::unique_ptr<ViewRendering> rendering;
+    };
+
+    void add(const View& v, double before) {
+        const Area seen = common(area_, {v.x, v.y, v.x + v.width, v.y + v.height});
+        if (seen.width() <= 0 || seen.height() <= 0) return;
+        std::function<void(double)> progress;
+        if (options_.progress) progress = [&, before](double fraction) { report(kMeshShare * (before + fraction) / static_cast<double>(layout_.views.size())); };
+        parts_.push_back({seen, std::make_unique<ViewRendering>(scene_, v, Area{seen.x0 - v.x, seen.y0 - v.y, seen.x1 - v.x, seen.y1 - v.y}, how_, environments_, progress)});
+    }
+    std::vector<Film*> films() const {
+        std::vector<Film*> all;
+        for (const Part& p : parts_) all.push_back(&p.rendering->film);
+        return all;
+    }
+    bool stopped() const { return options_.stop && options_.stop(); }
+    bool done() const {
+        return std::all_of(parts_.begin(), parts_.end(), [](const Part& p) { return p.rendering->film.done(); });
+    }
+    double traced() const {
+        double sum = 0;
+        for (const Part& p : parts_) sum += p.rendering->film.traced();
+        return sum;
+    }
+    /// Progress never runs backwards, whatever its parts report.
+    void report(double fraction) {
+        if (options_.progress) options_.progress(reached_ = std::max(reached_, std::min(fraction, 1.0)));
+    }
+    /// Of what was left to do when it began with `before` samples; `more` were traced since the films were asked.
+    void tell(double before, double more) {
+        if (!options_.progress) return;
+        if (more == 0) {
+            now_ = traced(), expected_ = 0;
+            for (const Part& p : parts_) expected_ += p.rendering->film.expected();
+            if (options_.tell_noise && now_ > 0) options_.tell_noise(noise());
+        }
+        report(kMeshShare + (1 - kMeshShare) * (now_ + more - before) / std::max(1.0, expected_ - before));
+    }
+    double noise() const {
+        double sum = 0, pixels = 0;
+        for (const Part& p : parts_) {
+            const double one = p.rendering->film.noise(p.rendering->area), n = static_cast<double>(p.rendering->area.pixels());
+            sum += n * one * one, pixels += n;
+        }
+        return pixels > 0 ? std::sqrt(sum / pixels) : 0;
+    }
+    /// False: it paused.
+    bool trace(const std::function<bool()>& pause, double before) {
+        double others = 0;
+        for (const Part& p : parts_) {
+            if (p.rendering->film.done()) continue;
+            double here = 0;
+            const auto progress = [&](double n) {
+                check_work(p.rendering->traced, how_.most_halved, (now_ + others + n) / std::max(1.0, expected_));
+                tell(before, others + (here = n));
+            };
+            if (!trace_round(p.rendering->tracer, p.rendering->film, options_.tile, pause, progress)) return false;
+            others += here;
+        }
+        return true;
+    }
+
+    Picture picture() const {
+        Picture all;
+        all.exact = options_.exact;
+        all.image = blank(area_.width(), area_.height(), scene_.image.background);
+        all.layers = blank_layers(area_.width(), area_.height(), options_.aovs);
+        all.seconds_mesh = seconds_mesh_;
+        double missed = 0, pixels = 0;
+        for (const Part& part : parts_) {
+            const Picture one = part.rendering->picture(options_.aovs);
+            paste(one, part.seen.x0 - area_.x0, part.seen.y0 - area_.y0, all);
+            for (DrawnPart d : one.drawn) {
+                d.x += part.seen.x0 - area_.x0, d.y += part.seen.y0 - area_.y0;
+                d.holes = part.rendering->view.covered;
+                all.drawn.push_back(std::move(d));
+            }
+            all.tolerance = std::max(all.tolerance, one.tolerance);
+            all.certified_error = std::max(all.certified_error, one.certified_error);
+            all.triangles += one.triangles;
+            all.leaves += one.leaves;
+            all.rays.rays += one.rays.rays;
+            all.rays.undecided += one.rays.undecided;
+            const Film& film = part.rendering->film;
+            missed += film.missed() * static_cast<double>(part.seen.pixels()), pixels += static_cast<double>(part.seen.pixels());
+            count_samples(film, part.rendering->area, all.samples);
+        }
+        all.samples.most_asked = how_.samples;
+        all.samples.target = how_.noise;
+        all.samples.missed = pixels > 0 ? missed / pixels : 0;
+        all.samples.noise = how_.statistics ? noise() : 0;
+        all.whole = done();
+        put_over(frames_of(layout_.views, layout_.pixel), -area_.x0, -area_.y0, layout_.width, layout_.height, options_.vectors, all);
+        put_over(titles_of(scene_, layout_.views), -area_.x0, -area_.y0, layout_.width, layout_.height, options_.vectors, all);
+        return all;
+    }
+
+    const Scene& scene_;
+    const RenderOptions& options_;
+    Layout layout_;
+    Area area_;
+    Quality how_{};
+    EnvironmentImages environments_;
+    std::vector<Part> parts_;
+    double reached_ = 0, now_ = 0, expected_ = 0, seconds_mesh_ = 0;
+};
+
 }  // namespace
 
-Picture render(const Scene& scene, const RenderOptions& options) {
-    const Layout layout = layout_of(scene, options);
-    const int width = layout.width, height = layout.height;
-    const std::vector<View>& views = layout.views;
-    const Area area = checked_area(options, width, height);
-    const Quality how{checked_size(options.samples ? options.samples : scene.image.samples, "number of samples", kMostSamples), options.tolerance.value_or(scene.tolerance), layout.pixel,
-                      options.aovs, options.exact, options.vectors, options.most_halved, options.grid};
-    double reached = 0;  // progress never runs backwards, whatever its parts report
-    Picture all;
-    all.exact = options.exact;
-    all.image = blank(area.width(), area.height(), scene.image.background);
-    all.layers = blank_layers(area.width(), area.height(), options.aovs);
-    for (std::size_t i = 0; i < views.size(); ++i) {
-        const View& v = views[i];
-        const Area seen = common(area, {v.x, v.y, v.x + v.width, v.y + v.height});
-        if (seen.width() <= 0 || seen.height() <= 0) continue;
-        std::function<void(double)> progress;
-        if (options.progress)
-            progress = [&, i](double fraction) {
-                options.progress(reached = std::max(
-                                     reached, (static_cast<double>(i) + fraction) / static_cast<double>(views.size())));
-            };
-        const Picture one =
-            render_view(scene, v, {seen.x0 - v.x, seen.y0 - v.y, seen.x1 - v.x, seen.y1 - v.y}, how, progress);
-        paste(one, seen.x0 - area.x0, seen.y0 - area.y0, all);
-        for (DrawnPart part : one.drawn) {
-            part.x += seen.x0 - area.x0, part.y += seen.y0 - area.y0;
-            part.holes = v.covered;
-            all.drawn.push_back(std::move(part));
-        }
-        all.tolerance = std::max(all.tolerance, one.tolerance);
-        all.certified_error = std::max(all.certified_error, one.certified_error);
-        all.triangles += one.triangles;
-        all.leaves += one.leaves;
-        all.rays.rays += one.rays.rays;
-        all.rays.undecided += one.rays.undecided;
-        all.seconds_mesh += one.seconds_mesh;
-        all.seconds_trace += one.seconds_trace;
-    }
-    put_over(frames_of(views, layout.pixel), -area.x0, -area.y0, width, height, options.vectors, all);
-    put_over(titles_of(scene, views), -area.x0, -area.y0, width, height, options.vectors, all);
-    return all;
-}
+Picture render(const Scene& scene, const RenderOptions& options) { return Rendering(scene, options).run(); }
 
 }  // namespace isoparm

@@ -4,11 +4,15 @@
 #include <string>
 
 #include "aov.h"
+#include "checkpoint.h"
 #include "drawing.h"
 #include "image.h"
+#include "resolve.h"
 #include "scene.h"
 
 namespace isoparm {
+
+struct Picture;
 
 struct RenderOptions {
     int width = 0, height = 0, samples = 0;  // 0: as the scene says
@@ -24,6 +28,15 @@ struct RenderOptions {
     bool printed = false;                    // on a page of a given width: letters are not too small for it
     bool vectors = false;                    // lines and texts are not painted, but given back in `drawn`
     std::function<void(double)> progress;    // fraction done; called from the calling thread
+    std::optional<double> noise;             // the target, as Film has it; 0: none; not given: as the scene says
+    std::function<void(double)> tell_noise;  // the noise so far, now and then, where there is progress; from the calling thread
+    std::function<bool()> stop;              // true: to end with what there is. Asked often, from every thread
+    std::function<void(const Picture&)> preview;  // gets the picture as it is, at once and then now and then, from the calling thread
+    Checkpoint checkpoint;                   // where to go on, and to put by what there is
+    int tile = 16;                           // pixels a side that one thread works on; the picture does not depend on it
+
+    /// Samples of a pixel; with a noise target at most.
+    int most_samples(const ImageSettings& image) const { return samples ? samples : image.samples ? image.samples : noise.value_or(image.noise) > 0 ? 4096 : 64; }
 };
 
 struct Picture {
@@ -37,9 +50,12 @@ struct Picture {
     EmbreeScene::Count rays;     // of an exact picture
     std::size_t leaves = 0;      // likewise
     double seconds_mesh = 0, seconds_trace = 0;
+    SampleCount samples;
+    bool whole = true;           // not ended before by RenderOptions::stop
 };
 
-/// Deterministic: the same pixels for every number of threads.
+/// Deterministic: the same pixels for every number of threads, every tile, and however often it was stopped and resumed. Throws what
+/// read_checkpoint() does, before there is anything to trace.
 Picture render(const Scene& scene, const RenderOptions& options);
 
 }  // namespace isoparm

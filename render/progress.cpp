@@ -53,7 +53,7 @@ void ProgressBar::operator()(double fraction) {
     next_ = now + std::chrono::milliseconds(100);
     shown_ = true;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    std::fprintf(stderr, "\r\033[K%s", progress_line(title_, fraction, seconds, terminal_columns()).c_str());
+    std::fprintf(stderr, "\r\033[K%s", progress_line(note_.empty() ? title_ : title_ + ", " + note_, fraction, seconds, terminal_columns()).c_str());
     std::fflush(stderr);
 }
 

@@ -15,10 +15,13 @@ public:
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
     void operator()(double fraction);
+    /// Something to say beside the title: "noise 0.01".
+    void note(const std::string& text) { note_ = text; }
+    bool enabled() const { return enabled_; }
 
 private:
     using Clock = std::chrono::steady_clock;
-    std::string title_;
+    std::string title_, note_;
     bool enabled_, shown_ = false;
     Clock::time_point start_ = Clock::now(), next_ = start_ + std::chrono::seconds(1);
 };

@@ -162,7 +162,9 @@ struct CameraSettings {
 };
 
 struct ImageSettings {
-    int width = 1024, height = 768, samples = 64;
+    int width = 1024, height = 768;
+    int samples = 0;                  // 0: as many as is usual
+    double noise = 0;                 // the target; 0: none
     std::optional<Color> background;  // none: transparent
 };
 
@@ -211,6 +213,7 @@ struct Scene {
     CameraSettings camera;
     ImageSettings image;
     std::optional<LightingSettings> lighting;  // none: the figures' own
+    std::optional<Ground> ground;
     Tolerance tolerance;
     std::vector<std::string> notes;  // what was done to definitions, each with its place
     std::vector<std::string> included;  // paths of the files that it names and that were read

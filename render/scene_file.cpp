@@ -92,11 +92,12 @@ std::vector<SceneObject> default_objects(const Scene& scene, const std::set<std:
 
 ImageSettings read_image(const Json& j, const SceneValues& values) {
     must_be_object(j, "an image {\"width\": ..., \"height\": ...}");
-    j.allow_keys({"width", "height", "samples", "background"});
+    j.allow_keys({"width", "height", "samples", "noise", "background"});
     ImageSettings image;
     if (const auto width = j.find("width")) image.width = values.integer(*width, 1, 32768, "a width in pixels");
     if (const auto height = j.find("height")) image.height = values.integer(*height, 1, 32768, "a height in pixels");
     if (const auto samples = j.find("samples")) image.samples = values.integer(*samples, 1, 65536, "a number of samples a pixel");
+    if (const auto noise = j.find("noise")) image.noise = values.in_range(*noise, 1e-5, 1, "the noise to reach, 1e-5 to 1; a grey level of 255 is 0.004");
     if (const auto background = j.find("background")) {
         if (!(background->is(Kind::string) && background->string() == "transparent")) image.background = values.color(*background);
     } else {
@@ -117,6 +118,19 @@ Tolerance read_tolerance(const Json& j, const SceneValues& values) {
     return {Tolerance::Unit::relative, values.positive(*relative, "a positive fraction of the bounding-box diagonal")};
 }
 
+/// Materials without traced light: a note, not an error, as "lighting" is often taken out for a quick look.
+void note_idle_materials(const Json& root, SceneBuilder& builder) {
+    if (root.find("lighting")) return;
+    const auto look = [&](const Json& holder) {
+        if (const auto objects = holder.find("objects"))
+            for (const Json& o : objects->children())
+                if (const auto material = o.find("material")) builder.note(*material, "a material says nothing without \"lighting\" in the scene");
+    };
+    look(root);
+    if (const auto panels = root.find("panels"))
+        for (const Json& p : panels->children()) look(p);
+}
+
 // ---- the whole ------------------------------------------------------------------------------------------------------
 
 void check_version(const Json& root) {
@@ -132,7 +146,7 @@ Surface finished(const std::string& name, const std::string& type, BuiltSurface 
 }
 
 Scene read_scene(const Json& root, const std::map<std::string, double>& overrides) {
-    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "panels", "layout", "marks", "insets", "camera", "image", "lighting", "tessellation"});
+    root.allow_keys({"$schema", "isoparm", "title", "source", "parameters", "curves", "surfaces", "objects", "panels", "layout", "marks", "insets", "camera", "image", "lighting", "ground", "tessellation"});
     check_version(root);
     SceneValues values;
     Scene scene;
@@ -164,14 +178,19 @@ Scene read_scene(const Json& root, const std::map<std::string, double>& override
         scene.place = objects->place();
         for (const Json& o : objects->children()) scene.objects.push_back(read_object(o, builder));
     }
-    scene.notes = builder.notes();
     read_panels(root, builder, scene);
+    note_idle_materials(root, builder);
+    scene.notes = builder.notes();
     scene.included.assign(builder.included_paths().begin(), builder.included_paths().end());
     if (scene.objects.empty()) scene.objects = default_objects(scene, builder.used_surfaces());
     scene.image.background = Color{1, 1, 1};
     if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera, values);
     if (const auto image = root.find("image")) scene.image = read_image(*image, values);
     if (const auto lighting = root.find("lighting")) scene.lighting = read_lighting(*lighting, values);
+    if (const auto ground = root.find("ground")) scene.ground = read_ground(*ground, values);
+    if (scene.lighting)
+        for (const Light& l : scene.lighting->lights)
+            if (!l.image.empty()) scene.included.push_back(l.image);
     if (const auto tessellation = root.find("tessellation")) scene.tolerance = read_tolerance(*tessellation, values);
     return scene;
 }

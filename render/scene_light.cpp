@@ -1,13 +1,18 @@
 #include "scene_light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "included_file.h"
+#include "suggest.h"
 
 namespace isoparm {
 namespace {
 
 using Kind = Json::Kind;
 constexpr double kMostPower = 1e12;
+constexpr double kNarrowest = 1e-7;  // radians: rays of float32 know no narrower light from one direction
 
 const std::vector<std::string> kMaterials{"diffuse", "plastic", "metal", "glass"};
 const std::vector<std::string> kLights{"studio", "environment", "directional", "sphere", "rectangle"};
@@ -25,8 +30,29 @@ Color read_power(const Json& j, const SceneValues& values, const std::string& wh
 
 Point read_direction(const Json& j, const SceneValues& values) {
     const Point d = values.point(j);
-    if (!(length(d) > 0 && std::isfinite(length(d)))) j.expected("a direction that is not zero and has a finite length");
-    return normalized(d);
+    const double most = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
+    if (!(most > 0 && std::isfinite(most))) j.expected("a direction that is not zero and has a finite length");
+    return normalized(Point{d.x / most, d.y / most, d.z / most});
+}
+
+/// Lengths whose products and squares are numbers.
+void must_be_usual(const Json& j, double length, const std::string& what) {
+    if (!(length >= 1e-70 && length <= 1e70)) j.fail("found " + what + " of length " + to_text(length) + ", expected 1e-70 to 1e70 scene units");
+}
+double length_of(const Point& p) { return std::hypot(p.x, p.y, p.z); }
+Point read_place(const Json& j, const SceneValues& values) {
+    const Point p = values.point(j);
+    if (!(length_of(p) <= 1e70)) j.fail("found a point at a distance of " + to_text(length_of(p)) + " from the origin, expected at most 1e70 scene units");
+    return p;
+}
+
+void read_environment_image(const Json& j, const SceneValues& values, Light& l) {
+    const auto image = j.find("image"), rotation = j.find("rotation"), up = j.find("up");
+    if (image) l.image = included_file(*image, values.text(*image, "the name of an image of all directions (.exr, .hdr), relative to the scene"));
+    for (const auto* key : {&rotation, &up})
+        if (*key && !image) (*key)->fail_at_key("found " + quoted((*key)->key()) + " without \"image\", expected the image that it turns");
+    if (rotation) l.turn = std::numbers::pi / 180 * values.in_range(*rotation, -360, 360, "degrees, -360 to 360");
+    if (up) l.direction = read_direction(*up, values);
 }
 
 Light read_light(const Json& j, const SceneValues& values) {
@@ -39,7 +65,9 @@ Light read_light(const Json& j, const SceneValues& values) {
             if (const auto scale = j.find("scale")) l.power = read_power(*scale, values, "a factor");
             break;
         case Light::Kind::environment:
-            j.allow_keys({"type", "radiance"});
+            j.allow_keys({"type", "radiance", "image", "rotation", "up", "seen"});
+            read_environment_image(j, values, l);
+            if (const auto seen = j.find("seen")) l.seen = values.boolean(*seen);
             if (const auto radiance = j.find("radiance")) l.power = read_power(*radiance, values, "a radiance");
             break;
         case Light::Kind::directional:
@@ -47,19 +75,22 @@ Light read_light(const Json& j, const SceneValues& values) {
             l.direction = -read_direction(j.at("direction", "the direction in which the light goes"), values);
             l.power = read_power(j.at("irradiance", "the irradiance at right angles to the light"), values, "an irradiance");
             if (const auto angle = j.find("angle")) l.radius = 0.5 * std::numbers::pi / 180 * values.in_range(*angle, 0, 170, "the width of the light's disc in degrees, 0 to 170");
+            if (l.radius < kNarrowest) l.radius = 0;
             break;
         case Light::Kind::sphere:
             j.allow_keys({"type", "center", "radius", "radiance"});
-            l.at = values.point(j.at("center", "the centre of the sphere"));
+            l.at = read_place(j.at("center", "the centre of the sphere"), values);
             l.radius = values.positive(j.at("radius", "the radius of the sphere"), "a positive radius in scene units");
+            must_be_usual(j.at("radius", ""), l.radius, "a radius");
             l.power = read_power(j.at("radiance", "the radiance of the light"), values, "a radiance");
             break;
         case Light::Kind::rectangle: {
             j.allow_keys({"type", "corner", "edges", "radiance"});
-            l.at = values.point(j.at("corner", "a corner of the rectangle"));
+            l.at = read_place(j.at("corner", "a corner of the rectangle"), values);
             const Json edges = j.at("edges", "the two edges from the corner");
             const auto both = values.points(edges, 2, 2);
             l.edges = {both[0], both[1]};
+            for (const Point& e : both) must_be_usual(edges, length_of(e), "an edge");
             const double across = dot(both[0], both[1]), most = length(both[0]) * length(both[1]);
             if (!(most > 0) || std::fabs(across) > 1e-6 * most) edges.expected("two edges at right angles; light leaves on the side of edges[0] x edges[1]");
             l.power = read_power(j.at("radiance", "the radiance of the light"), values, "a radiance");
@@ -89,6 +120,17 @@ Material read_material(const Json& j, const SceneValues& values) {
     if (const auto ior = j.find("ior")) m.ior = values.in_range(*ior, 1.01, 4, "an index of refraction from 1.01 to 4");
     if (const auto thin = j.find("thin")) m.thin = values.boolean(*thin);
     return m;
+}
+
+std::optional<Ground> read_ground(const Json& j, const SceneValues& values) {
+    if (j.is(Kind::boolean)) return j.boolean() ? std::optional(Ground{}) : std::nullopt;
+    if (!j.is(Kind::object)) j.expected("true, or {\"up\": [x,y,z], \"height\": h, \"shadow\": 0 to 1}");
+    j.allow_keys({"up", "height", "shadow"});
+    Ground g;
+    if (const auto up = j.find("up")) g.up = read_direction(*up, values);
+    if (const auto height = j.find("height")) g.height = values.in_range(*height, -1e70, 1e70, "a height in scene units, at most 1e70");
+    if (const auto shadow = j.find("shadow")) g.shadow = values.in_range(*shadow, 0, 1, "how much of the shadow shows, 0 to 1");
+    return g;
 }
 
 LightingSettings read_lighting(const Json& j, const SceneValues& values) {

@@ -32,6 +32,14 @@ double highlight(const Point& n, const Point& light, const Point& view) {
 
 }  // namespace
 
+FigureLighting::FigureLighting(const Camera& camera, const std::optional<Ground>& ground) : studio_(camera), key_(studio_.key) {
+    if (!ground) return;
+    constexpr int kSteps = 128;
+    const LocalFrame frame(ground->up);
+    for (int i = 0; i < kSteps; ++i)
+        for (int k = 0; k < kSteps; ++k) sky_on_ground_ += (1.0 / (kSteps * kSteps)) * studio_.sky(frame.to_world(on_hemisphere({(i + 0.5) / kSteps, (k + 0.5) / kSteps})));
+}
+
 void FigureLighting::shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const {
     Ray to_key[EmbreeScene::packet], to_sky[EmbreeScene::packet];
     double key_light[EmbreeScene::packet], sky_light[EmbreeScene::packet];
@@ -50,6 +58,13 @@ void FigureLighting::shade(const TracedScene& scene, const PixelSampler& sampler
         const Surfel& s = surfels[i];
         const double cosine = std::max(0.0, dot(s.normal, to_key[i].direction)), key = key_light[i];
         const Color ambient = studio_.sky(to_sky[i].direction);
+        if (s.ground) {
+            // The key light through the middle of its disc, so that the sum has no noise where there is no shadow.
+            const double middle = std::max(0.0, dot(s.normal, studio_.key));
+            const Color all = middle * Studio::key_light + sky_on_ground_, lacks = (middle * (1 - key) * (lit >> i & 1)) * Studio::key_light + ((1 - kBounce) * (1 - sky_light[i])) * ambient;
+            out[i] = {-lacks.x / all.x, -lacks.y / all.y, -lacks.z / all.z};
+            continue;
+        }
         // What hides the sky is lit itself, and about as bright and coloured as what it hides it from.
         const Color bounced = (kBounce * (1 - sky_light[i])) * product(s.color, ambient);
         const Color diffuse = product(s.color, (cosine * key) * Studio::key_light + sky_light[i] * ambient + bounced);

@@ -20,6 +20,7 @@ struct Surfel {
     Color color;   // linear reflectance
     double opacity = 1;
     bool front = true;  // the viewer sees the outward side
+    bool ground = false;  // of the plane that shows only shadows
     const Material* material = nullptr;
     Color ink;  // of the lines drawn on it, unlit
     double ink_cover = 0;
@@ -33,19 +34,24 @@ public:
     virtual ~Lighting() = default;
     /// How many dimensions of the sampler a surfel uses.
     virtual int dimensions() const = 0;
-    /// Light leaving n <= EmbreeScene::packet surfels of one pixel toward the viewer, linear, without the ink.
+    /// Light leaving n <= EmbreeScene::packet surfels of one pixel toward the viewer, linear, without the ink. Of the ground: the part of its light by
+    /// which it differs from a white one with nothing on it: -1 in full shadow, 0 where nothing changes it.
     virtual void shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const = 0;
+    /// What the camera sees where nothing is, instead of the background.
+    virtual std::optional<Color> backdrop(const Point&) const { return {}; }
 };
 
 class FigureLighting : public Lighting {
 public:
-    explicit FigureLighting(const Camera& camera) : studio_(camera), key_(studio_.key) {}
+    /// `ground`: as of PathLighting.
+    explicit FigureLighting(const Camera& camera, const std::optional<Ground>& ground = {});
     int dimensions() const override { return 2; }
     void shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const override;
 
 private:
     Studio studio_;
     LocalFrame key_;
+    Color sky_on_ground_;  // its mean over directions, weighted with the cosine
 };
 
 }  // namespace isoparm

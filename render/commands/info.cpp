@@ -3,6 +3,7 @@
 
 #include "commands/options.h"
 #include "json_text.h"
+#include "picture.h"
 #include "piecewise_bezier.h"
 
 namespace isoparm {
@@ -68,7 +69,7 @@ void print_text(std::ostream& out, const Scene& scene) {
     row(box.low);
     row(box.high);
     out << "\ndraws " << scene.objects.size() << (scene.objects.size() == 1 ? " object" : " objects") << ", tolerance " << tolerance_text(scene.tolerance)
-        << ", picture " << scene.image.width << "x" << scene.image.height << ", " << scene.image.samples << " samples a pixel\n";
+        << ", picture " << scene.image.width << "x" << scene.image.height << ", " << RenderOptions().most_samples(scene.image) << " samples a pixel" << (scene.image.noise > 0 ? " at most, noise " + to_text(scene.image.noise) : "") << "\n";
 }
 
 /// f(x) of all x, with commas between.

@@ -1,15 +1,26 @@
 #include <cstdio>
+#include <algorithm>
+#include <filesystem>
 #include <functional>
 
 #include "commands/frames.h"
+#include "commands/interruption.h"
 #include "commands/output.h"
+#include "commands/picture_key.h"
 #include "commands/render_options.h"
 #include "paper.h"
 #include "progress.h"
+#include "suggest.h"
 
 namespace isoparm {
 
 namespace {
+
+std::string brief(double x) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.3g", x);
+    return text;
+}
 
 constexpr const char* kHelp = R"(usage: isoparm render SCENE -o IMAGE [--size WxH] [--samples N] [--tolerance T] [--crop x0,y0,x1,y1] ...
 
@@ -25,10 +36,17 @@ surfaces. The same scene gives the same bytes, for every number of threads and a
 --text fonts|outlines   of .pdf and .svg: letters as text (the default), or as outlines
 --camera FILE     the camera of a file, as isoparm camera print writes it
 --samples N       samples a pixel; otherwise the scene's
+--noise X         as many samples as a noise of X takes, in blocks of 8 x 8 pixels, at most those of --samples: the standard error of
+                  pixels as they are shown (sRGB, white is 1; 0.004 is a grey level). Exit code 1 when some blocks
+                  do not come to it. 0: not even when the scene asks
+--preview         writes a coarse picture at once, and a finer one in its place now and then
+--resume FILE     goes on where a run that was ended or killed has left FILE, to the same pixels; begins anew where there is no
+                  FILE, writes it now and then, and removes it when the picture is written
+--checkpoint-every S  seconds from one writing of FILE to the next, 0.1 to 86400; 60 when not given
 --tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal, 0.25px of the picture; otherwise the scene's
 --crop x0,y0,x1,y1  only these pixels, x0 <= x < x1, y0 <= y < y1, y down
 --aov LIST        further channels in the same .exr, of the ray through the middle of each pixel: all, or some of
-                  N,Ng,P,uv,albedo,Z,patch,triangle,curvature,error,variance (docs/rendering.md)
+                  N,Ng,P,uv,albedo,Z,patch,triangle,curvature,error,variance,sample_variance,samples (docs/rendering.md)
 --exact           rays meet the surfaces themselves, not meshes: hits are proved (docs/exact.md); slower. Curves and points are
                   as they were, and --tolerance is for them only
 --reproducible    no dates or host names in the file, which is the case anyway
@@ -37,19 +55,57 @@ surfaces. The same scene gives the same bytes, for every number of threads and a
 --animate p=A:B   the parameter p goes from A in the first frame to B in the last, evenly; --animate p goes from its min
                   to its max. May be repeated. Cameras that fit have all frames in the picture
 --quiet           no messages; --threads N  at most N threads
+
+SIGINT (Ctrl-C) and SIGTERM end a picture early: it is written as it is, whole, with fewer samples (isoparm:unfinished and
+isoparm:samples tell how many), and the exit code is 130 or 143. Once more ends at once. Frames of a film end without the
+one that was being made.
 )";
 
-void render_one(const Scene& scene, const std::string& output, RenderOptions how, const Options& options) {
+constexpr int kUnfinished = -1;
+
+/// Whether the picture is as good as was asked for, as an exit code; or kUnfinished.
+int render_one(const Scene& scene, const std::string& output, RenderOptions how, const Options& options) {
     const bool quiet = options.quiet();
     finite_diagonal(scene, bounding_box(scene));
     how = rendering_of(std::move(how), output);
     const Picture picture = [&] {
         ProgressBar bar("rendering", quiet);
         how.progress = std::ref(bar);
+        if (bar.enabled()) how.tell_noise = [&](double noise) { bar.note("noise " + brief(noise)); };
         return render(scene, how);
     }();
     write_picture(options, output, scene, how, picture);
     if (!quiet) std::fprintf(stderr, "%s: %s\n", output.c_str(), summary_of(picture).c_str());
+    const SampleCount& n = picture.samples;
+    if (!picture.whole) return kUnfinished;
+    if (!(n.missed > 0)) return kSuccess;
+    std::fprintf(stderr, "isoparm: %s: %s %% of the picture did not come to a noise of %s within %d samples a pixel; --samples allows for more\n", output.c_str(), brief(100 * n.missed).c_str(),
+                 brief(n.target).c_str(), n.most_asked);
+    return kWarning;
+}
+
+/// One that may take long.
+int render_long(const Scene& scene, const std::string& output, RenderOptions how, const Options& options) {
+    how = rendering_of(std::move(how), output);
+    how.checkpoint.path = options.value("--resume").value_or("");
+    if (!how.checkpoint.path.empty()) how.checkpoint.key = picture_key(scene, how, options);
+    if (const auto seconds = options.number("--checkpoint-every")) {
+        if (how.checkpoint.path.empty()) options.fail("--checkpoint-every: found no --resume, expected --resume FILE");
+        if (!(*seconds >= 0.1 && *seconds <= 86400)) options.fail("--checkpoint-every: found " + quoted(*options.value("--checkpoint-every")) + ", expected 0.1 to 86400 seconds");
+        how.checkpoint.seconds = *seconds;
+    }
+    if (options.has("--preview")) how.preview = [&](const Picture& picture) { write_picture(options, output, scene, how, picture); };
+    const Interruption interruption(options.quiet());
+    how.stop = [&] { return interruption.signal() != 0; };
+    const int code = render_one(scene, output, how, options);
+    if (code == kUnfinished) {
+        if (!options.quiet())
+            std::fprintf(stderr, "isoparm: %s was written before it was finished%s\n", output.c_str(), how.checkpoint.path.empty() ? "" : (", the same command goes on with it (" + how.checkpoint.path + ")").c_str());
+        return 128 + interruption.signal();
+    }
+    std::error_code none;
+    if (!how.checkpoint.path.empty()) std::filesystem::remove(how.checkpoint.path, none);
+    return code;
 }
 
 /// With the camera of --camera instead of its own.
@@ -66,7 +122,7 @@ int run(const std::vector<std::string>& arguments) {
     std::vector<Options::Known> known = paper_options();
     known.insert(known.end(),
                           {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}, {"--crop", true}, {"--set", true}, {"--reproducible", false}, {"--frames", true}, {"--animate", true},
-                           {"--camera", true}, {"--exact", false}, {"--aov", true}});
+                           {"--camera", true}, {"--exact", false}, {"--aov", true}, {"--noise", true}, {"--preview", false}, {"--resume", true}, {"--checkpoint-every", true}});
     const Options options("render", arguments, known);
     const std::string output = options.required("-o", "the image file to write");
     RenderOptions how = read_render_options(options);
@@ -75,18 +131,21 @@ int run(const std::vector<std::string>& arguments) {
     if (options.has("--frames") || options.has("--animate")) {
         const auto frames = frames_of(options, output);
         how.also_fit = points_of(frames, options);
-        for (const Frame& f : frames) render_one(scene_of(options, f.parameters), f.path, how, options);
-        return kSuccess;
+        for (const char* one : {"--resume", "--preview", "--checkpoint-every"})
+            if (options.has(one)) options.fail(std::string(one) + ": found --frames, expected a single picture");
+        int code = kSuccess;
+        for (const Frame& f : frames) code = std::max(code, render_one(scene_of(options, f.parameters), f.path, how, options));
+        return code;
     }
     check_picture_path(options, output);
     std::vector<NamedFile> files;
     for (const std::string& file : paper_files(output)) files.push_back({"-o", file});
+    if (const auto checkpoint = options.value("--resume")) files.push_back({"--resume", *checkpoint});
     const Scene scene = scene_of(options);
     std::vector<NamedFile> inputs = inputs_of(scene);
     if (const auto camera = options.value("--camera")) inputs.push_back({"--camera", *camera});
     check_outputs(options, files, inputs);
-    render_one(scene, output, how, options);
-    return kSuccess;
+    return render_long(scene, output, how, options);
 }
 
 }  // namespace

@@ -30,6 +30,12 @@ std::vector<int> whole_numbers(const std::string& text, char separator, std::siz
     return r.size() == count ? r : std::vector<int>{};
 }
 
+std::string short_text(double x) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.4g", x);
+    return text;
+}
+
 /// "84mm" in points of 1/72 inch; 0 when it is no such length.
 double length_in_points(const std::string& text) {
     const char* end = text.data() + text.size();
@@ -103,6 +109,10 @@ RenderOptions read_render_options(const Options& options) {
     if (const auto size = read_size(options, "--size", 1, 32768)) how.width = (*size)[0], how.height = (*size)[1];
     read_page(options, how);
     if (const auto samples = options.integer("--samples", 1, 65536)) how.samples = *samples;
+    if (const auto noise = options.number("--noise")) {
+        if (!(*noise == 0 || (*noise >= 1e-5 && *noise <= 1))) options.fail("--noise: found " + quoted(*options.value("--noise")) + ", expected 0, or 1e-5 to 1; a grey level of 255 is 0.004");
+        how.noise = *noise;
+    }
     how.tolerance = options.tolerance();
     if (const auto crop = options.value("--crop")) {
         const auto n = whole_numbers(*crop, ',', 4);
@@ -146,20 +156,29 @@ Metadata metadata_of(const Scene& scene, const Picture& picture) {
         data.push_back({"isoparm:certified_error", to_text(picture.certified_error)});
         data.push_back({"isoparm:triangles", std::to_string(picture.triangles)});
     }
+    const SampleCount& n = picture.samples;
+    if (n.target > 0 || !picture.whole) {
+        data.push_back({"isoparm:samples", "least " + std::to_string(n.least) + ", mean " + short_text(n.mean) + ", most " + std::to_string(n.most) + ", limit " + std::to_string(n.most_asked)});
+        if (n.target > 0) data.push_back({"isoparm:noise", short_text(n.noise) + ", target " + to_text(n.target)});
+    }
+    if (!picture.whole) data.push_back({"isoparm:unfinished", "ended before all samples were traced"});
     if (!picture.layers.channels.empty()) data.push_back({"isoparm:patches", patch_numbers(scene)});
     return data;
 }
 
 std::string summary_of(const Picture& p) {
     char text[200];
+    std::string samples;
+    if (p.samples.target > 0 || !p.whole) samples = ", " + short_text(p.samples.mean) + " samples a pixel";
+    if (p.samples.target > 0) samples += ", noise " + short_text(p.samples.noise);
     if (p.exact) {
         std::snprintf(text, sizeof text, "%dx%d, exact, %zu leaves, %.2f s; of %llu rays %llu ended undecided (tangent, or at a singular point)", p.image.width, p.image.height,
                       p.leaves, p.seconds_mesh + p.seconds_trace, static_cast<unsigned long long>(p.rays.rays), static_cast<unsigned long long>(p.rays.undecided));
-        return text;
+        return text + samples;
     }
     std::snprintf(text, sizeof text, "%dx%d, %zu triangles, certified error %.3g (tolerance %.3g), %.2f s", p.image.width, p.image.height, p.triangles, p.certified_error,
                   p.tolerance, p.seconds_mesh + p.seconds_trace);
-    return text;
+    return text + samples;
 }
 
 }  // namespace isoparm

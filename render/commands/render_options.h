@@ -8,7 +8,7 @@
 namespace isoparm {
 /// WIDTHxHEIGHT after the option of that name, when it is given, each from `least` to `most`. Throws Error(usage).
 std::optional<std::array<int, 2>> read_size(const Options& options, const std::string& name, int least, int most);
-/// --size, --width, --dpi, --font-size, --samples, --tolerance, --crop. Throws Error(usage).
+/// --size, --width, --dpi, --font-size, --samples, --noise, --tolerance, --crop. Throws Error(usage).
 RenderOptions read_render_options(const Options& options);
 /// Those of pictures for print: --width, --dpi, --font-size, --text.
 const std::vector<Options::Known>& paper_options();

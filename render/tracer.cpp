@@ -1,0 +1,172 @@
+#include "tracer.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <thread>
+
+namespace isoparm {
+
+void Tracer::sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* spread, const std::function<bool()>& stop) const {
+    const PixelSampler sampler(x, y, samples_);
+    while (sum.seen < to && !(stop && stop())) {
+        const int first = sum.seen, n = std::min(EmbreeScene::packet, to - first);
+        Ray rays[EmbreeScene::packet];
+        Rgba seen[EmbreeScene::packet];
+        for (int i = 0; i < n; ++i) {
+            const Vec2 at = filter_(sampler(first + i, 0));
+            rays[i] = camera_.ray(x + 0.5 + at.x, y + 0.5 + at.y);
+        }
+        trace(sampler, rays, first, n, seen);
+        for (int i = 0; i < n; ++i) {
+            if (counts) sum.color += seen[i].color, sum.alpha += seen[i].alpha;
+            if (!spread) continue;
+            seen[i].add_behind(background_.value_or(Color{1, 1, 1}), 1);
+            spread->add(seen[i].color);
+        }
+        sum.seen += n;
+        if (counts) sum.used += n;
+    }
+}
+
+Rgba Tracer::resolved(const PixelSum& sum) const {
+    Rgba mean{sum.color / double(sum.used), sum.alpha / sum.used};
+    return finished(mean);
+}
+
+Rgba Tracer::finished(Rgba pixel) const {
+    if (background_) {
+        pixel.add_behind(*background_, 1);
+    } else if (ground_) {  // shadows are not quite grey: the same over white, without colours below zero
+        const double lift = std::max({0.0, -pixel.alpha, -pixel.color.x, -pixel.color.y, -pixel.color.z});
+        pixel.color += Color{lift, lift, lift}, pixel.alpha = std::min(1.0, pixel.alpha + lift);
+    }
+    return pixel;
+}
+
+Rgba Tracer::glance(double x, double y) const {
+    const PixelSampler sampler(static_cast<int>(x), static_cast<int>(y), samples_);
+    const Ray ray = camera_.ray(x, y);
+    Rgba seen;
+    trace(sampler, &ray, 0, 1, &seen);
+    return finished(seen);
+}
+
+void Tracer::trace(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba* seen) const {
+    std::vector<Met> met;
+    if (scene_.embree->translucent()) {
+        std::vector<Hit> hits;
+        for (int i = 0; i < n; ++i) {
+            scene_.embree->layers(rays[i], hits);
+            if (const auto ground = ground_hit(rays[i], std::numeric_limits<double>::infinity())) {
+                while (!hits.empty() && hits.back().distance >= ground->distance) hits.pop_back();
+                const bool open = hits.empty() || scene_.things[hits.back().geometry].opacity < 1;
+                if (open) hits.push_back(*ground);
+            }
+            for (std::size_t k = 0; k < hits.size(); ++k) met.push_back({hits[k], i, static_cast<int>(k)});
+        }
+    } else {
+        Hit hits[EmbreeScene::packet];
+        scene_.embree->intersect(rays, n, hits);
+        for (int i = 0; i < n; ++i) {
+            if (const auto ground = ground_hit(rays[i], hits[i].distance)) met.push_back({*ground, i, 0});
+            else if (hits[i].found()) met.push_back({hits[i], i, 0});
+        }
+    }
+    add_light(sampler, rays, first, met, seen);
+    for (int i = 0; i < n; ++i)
+        if (const auto behind = lighting_.backdrop(rays[i].direction)) seen[i].add_behind(*behind, 1);
+}
+
+std::optional<Hit> Tracer::ground_hit(const Ray& ray, double end) const {
+    if (!ground_) return {};
+    Hit hit;
+    hit.distance = ground_->meet(ray.origin, ray.direction);
+    if (!(hit.distance >= 0 && hit.distance < end)) return {};
+    return hit;
+}
+
+Surfel Tracer::ground_surfel(const Ray& ray, double distance) const {
+    Surfel s;
+    s.ground = true;
+    s.view = -ray.direction;
+    s.position = ray.origin + distance * ray.direction;
+    s.normal = s.shading = s.geometric = ground_->up;
+    const double clear = 4e-6 * scene_.embree->radius();
+    s.origin = s.position + clear * s.normal, s.beneath = s.position - clear * s.normal;
+    s.color = {1, 1, 1};
+    s.material = &paper_;
+    return s;
+}
+
+void Tracer::surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const {
+    Ray by[EmbreeScene::packet];
+    Hit found[EmbreeScene::packet];
+    Surfel some[EmbreeScene::packet];
+    int who[EmbreeScene::packet], count = 0;
+    for (int k = 0; k < n; ++k) {
+        if (hits[k].found()) who[count] = k, by[count] = rays[k], found[count++] = hits[k];
+        else out[k] = ground_surfel(rays[k], hits[k].distance);
+    }
+    surfels_at(scene_, camera_, by, found, count, some);
+    for (int k = 0; k < count; ++k) out[who[k]] = some[k];
+}
+
+/// Layers of a ray come from front to back.
+void Tracer::add_light(const PixelSampler& sampler, const Ray* rays, int first, const std::vector<Met>& met, Rgba* seen) const {
+    for (std::size_t begin = 0; begin < met.size(); begin += EmbreeScene::packet) {
+        const int count = static_cast<int>(std::min<std::size_t>(EmbreeScene::packet, met.size() - begin));
+        Ray by[EmbreeScene::packet];
+        Hit hits[EmbreeScene::packet];
+        for (int k = 0; k < count; ++k) by[k] = rays[met[begin + k].ray], hits[k] = met[begin + k].hit;
+        Surfel surfels[EmbreeScene::packet];
+        if (ground_) this->surfels(by, hits, count, surfels);
+        else surfels_at(scene_, camera_, by, hits, count, surfels);
+        for (int k = 0; k < count; ++k) {
+            surfels[k].sample = first + met[begin + k].ray;
+            surfels[k].dimension = 1 + lighting_.dimensions() * met[begin + k].layer;
+        }
+        Color light[EmbreeScene::packet];
+        lighting_.shade(scene_, sampler, surfels, count, light);
+        for (int k = 0; k < count; ++k) {
+            Rgba& pixel = seen[met[begin + k].ray];
+            if (surfels[k].ground) {  // white times 1 + light: what is lacking hides, what has a colour is added
+                const Color shade = ground_->shadow * light[k];
+                const double grey = (shade.x + shade.y + shade.z) / 3, open = 1 - pixel.alpha;
+                pixel.color += open * (shade - Color{grey, grey, grey}), pixel.alpha -= open * grey;
+                continue;
+            }
+            if (surfels[k].ink_cover > 0) pixel.add_behind(surfels[k].ink, surfels[k].ink_cover);
+            pixel.add_behind(light[k], surfels[k].opacity);
+        }
+    }
+}
+
+bool trace_round(const Tracer& tracer, Film& film, int side, const std::function<bool()>& stop, const std::function<void(double)>& progress) {
+    const Area& area = film.area();
+    const int across = (area.width() + side - 1) / side, tiles = across * ((area.height() + side - 1) / side);
+    const auto caller = std::this_thread::get_id();
+    std::atomic<bool> stopped{false};
+    std::atomic<std::int64_t> traced{0};
+    tbb::parallel_for(0, tiles, [&](int tile) {
+        std::int64_t here = 0;
+        const int x0 = area.x0 + side * (tile % across), y0 = area.y0 + side * (tile / across);
+        for (int y = y0; y < std::min(y0 + side, area.y1); ++y)
+            for (int x = x0; x < std::min(x0 + side, area.x1); ++x) {
+                PixelSum& pixel = film.at(x, y);
+                if (!film.goes_on(x, y) || pixel.seen >= film.round()) continue;
+                if (stopped.load(std::memory_order_relaxed)) return;
+                const int before = pixel.seen;
+                tracer.sample(x, y, film.round(), film.counts(x, y), pixel, film.spread(x, y), stop);
+                here += pixel.seen - before;
+                if (pixel.seen < film.round()) stopped = true;
+            }
+        const std::int64_t all = traced += here;
+        if (progress && std::this_thread::get_id() == caller) progress(static_cast<double>(all));
+    });
+    return !stopped;
+}
+
+}  // namespace isoparm

@@ -1,0 +1,65 @@
+// tracer.h -- the samples of a picture's pixels: rays through them, what they meet, and the light that comes back.
+#pragma once
+#include "film.h"
+#include "sampler.h"
+#include "shade.h"
+#include "surfel.h"
+#include "traced_scene.h"
+
+namespace isoparm {
+
+/// A colour, premultiplied, and how much of what is behind it hides.
+struct Rgba {
+    Color color;
+    double alpha = 0;
+    /// What lies behind, seen through what is here.
+    void add_behind(const Color& c, double opacity) {
+        color += ((1 - alpha) * opacity) * c;
+        alpha += (1 - alpha) * opacity;
+    }
+};
+
+/// Immutable; safe to use from every thread. All that it is given must live as long.
+class Tracer {
+public:
+    /// `ground`: with its height, as the lighting knows it.
+    Tracer(const TracedScene& scene, const Camera& camera, const Lighting& lighting, int samples, const std::optional<Color>& background, const std::optional<Ground>& ground)
+        : scene_(scene), camera_(camera), lighting_(lighting), samples_(samples), background_(background), ground_(ground) {}
+
+    /// Traces samples of the pixel up to number `to`, in packets that begin at multiples of EmbreeScene::packet; between them it may end early when
+    /// `stop` says so. `counts`: they are added to the sums. `spread` may be nullptr.
+    void sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* spread, const std::function<bool()>& stop) const;
+    /// Background and all, premultiplied; of a pixel that has samples.
+    Rgba resolved(const PixelSum& sum) const;
+    /// A single sample through the middle of some pixels, for pictures that are not there yet.
+    Rgba glance(double x, double y) const;
+
+private:
+    /// What a ray of the pixel met, and as which of its layers; a hit that is none is of the ground, at its distance.
+    struct Met {
+        Hit hit;
+        int ray, layer;
+    };
+    Rgba finished(Rgba pixel) const;
+    /// What a ray meets of the ground before `end`.
+    std::optional<Hit> ground_hit(const Ray& ray, double end) const;
+    Surfel ground_surfel(const Ray& ray, double distance) const;
+    void surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const;
+    void trace(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba* seen) const;
+    void add_light(const PixelSampler& sampler, const Ray* rays, int first, const std::vector<Met>& met, Rgba* seen) const;
+
+    const TracedScene& scene_;
+    const Camera& camera_;
+    const Lighting& lighting_;
+    PixelFilter filter_;
+    int samples_;
+    std::optional<Color> background_;
+    std::optional<Ground> ground_;
+    Material paper_{Material::Kind::diffuse};
+};
+
+/// Traces the round of the film, tile by tile, until it is made or `stop` says so; `progress` gets the samples traced since, from the calling
+/// thread only. `tile`: pixels a side, which changes nothing but the speed. True: the round is made.
+bool trace_round(const Tracer& tracer, Film& film, int tile, const std::function<bool()>& stop, const std::function<void(double)>& progress);
+
+}  // namespace isoparm
