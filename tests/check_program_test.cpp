@@ -126,6 +126,17 @@ TEST(CheckProgram, DataAndTheirRemedies) {
     for (const Json::Value& l : network.json["lines"]) EXPECT_EQ(l["order"].asString(), "C1");
     EXPECT_EQ(network.json["edges"].size(), 0u);
 }
+TEST(CheckProgram, FarFromTheOriginRoundingIsNamed) {
+    const TemporaryFolder t;
+    const auto scene_at = [](const std::string& x) {
+        return R"({"isoparm": 1, "surfaces": {"S": {"type": "transform", "translate": [)" + x + R"(, 0, 0], "surface": {"type": "composite", "members": [
+          {"type": "bezier", "points": [[[0,0,0],[0,1,0.3]],[[1,0,0.1],[1,1,0.7]]]}, {"type": "bezier", "points": [[[1,0,0.1],[1,1,0.7]],[[2,0,0],[2,1,0.1]]]}]}}}})";
+    };
+    write_all(t / "near.json", scene_at("0")), write_all(t / "far.json", scene_at("1e9"));
+    EXPECT_EQ(checked(t / "near.json").code, 0);
+    expect("check " + t / "far.json", 1, "move the surfaces to the origin, or give a larger --tolerance");
+    expect("check " + t / "far.json --tolerance 1e-3", 0, "");
+}
 TEST(CheckProgram, ErrorsSayWhatIsWrong) {
     const TemporaryFolder t;
     write_all(t / "apart.json", R"({"isoparm": 1, "surfaces": {"S": {"type": "coons",

@@ -84,6 +84,12 @@ TEST(LimitView, FacesWithoutTangentsAreLeftOutOfBothPictures) {
     EXPECT_EQ(view(cage, Scheme::catmull_clark).left_out, c.left_out);
 }
 
+TEST(LimitView, CagesThatNoRayMeetsAreNotCalledEqual) {
+    Cage cage = cube_cage();
+    for (Point& p : cage.positions) p = 1e-30 * p;
+    EXPECT_FALSE(view_limit(LimitSurface(cage, Scheme::catmull_clark), LimitFaces(cage, Scheme::catmull_clark), 96, 72));
+}
+
 TEST(LimitView, TheCommandTellsAndDrawsIt) {
     const std::string folder = testing::TempDir() + "isoparm_limit_view";
     testing::internal::CaptureStdout();

@@ -230,6 +230,16 @@ void print_text(std::ostream& out, const Report& r) {
     if (r.failed.empty() && r.unproved.empty()) out << "All that these surfaces promise is proved; edges of one surface that are near each other meet.\n";
 }
 
+/// Why nothing below some size can be proved, where that is above the tolerance: coordinates have rounding of their own, and bounds are some hundred times it.
+std::string rounding_note(const Bounds& box, double tolerance) {
+    double reach = 0;
+    for (int k = 0; k < 3; ++k) reach = std::max({reach, std::fabs(box.low[k]), std::fabs(box.high[k])});
+    const double rounding = 0x1p-53 * reach;
+    if (!(1000 * rounding > tolerance)) return {};
+    return "the surfaces reach " + bound_text(reach, 3, true) + " from the origin, where coordinates are rounded by " + bound_text(rounding, 3, true) + "; bounds some hundred times that cannot decide at the tolerance " +
+           bound_text(tolerance, 3, true) + ": move the surfaces to the origin, or give a larger --tolerance";
+}
+
 int run(const std::vector<std::string>& arguments) {
     const Options options("check", arguments,
                           {{"--surface", true}, {"--set", true}, {"--tolerance", true}, {"--angle", true}, {"--capture", true}, {"--halvings", true}, {"--json", false}});
@@ -242,7 +252,8 @@ int run(const std::vector<std::string>& arguments) {
     Report r;
     r.selection = select_patches(scene, options);
     ContinuityOptions& how = r.options;
-    how.size = finite_diagonal(scene, bounding_box(r.selection.patches));
+    const Bounds box = bounding_box(r.selection.patches);
+    how.size = finite_diagonal(scene, box);
     if (how.size == 0) throw_input(scene.place + ": found surfaces of size 0, expected some that have edges to check");
     how.tolerance = tolerance ? absolute_tolerance(*tolerance, how.size, options) : 1e-9 * how.size;
     how.capture = !capture ? 1e-2 * how.size : *capture == "0" ? 0 : absolute_tolerance(parse_tolerance(*capture), how.size, options);
@@ -255,6 +266,8 @@ int run(const std::vector<std::string>& arguments) {
     judge_joints(r);
     judge_promises(r);
     (options.has("--json") ? print_json : print_text)(std::cout, r);
+    const std::string note = r.unproved.empty() ? "" : rounding_note(box, how.tolerance);
+    if (!note.empty() && !options.quiet()) std::cerr << "isoparm check: " << note << "\n";
     return !r.failed.empty() ? kCheckFailed : !r.unproved.empty() ? kWarning : kSuccess;
 }
 

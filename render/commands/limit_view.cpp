@@ -120,6 +120,7 @@ std::optional<LimitView> view_limit(const LimitSurface& limit, const LimitFaces&
     v.pictures.limit = half_of(picture.image, 0), v.pictures.composite = half_of(picture.image, width);
     compare_colors(v);
     compare_normals(picture.layers, v);
+    if (v.both + v.silhouette_differing == 0) return {};  // so small (some 1e-20) that single precision, in which rays meet triangles, sees nothing
     v.silhouette_distance = std::max(farthest(v, 1), farthest(v, 2));
     return v;
 }

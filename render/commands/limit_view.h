@@ -30,7 +30,7 @@ struct LimitView {
     LimitPictures pictures;
 };
 
-/// `faces`: of the cage of `limit`. Nothing where the composite has no patch at all. Does not depend on the number of threads. Throws what render() throws.
+/// `faces`: of the cage of `limit`. Nothing where the composite has no patch at all, and where rays meet neither surface. Does not depend on the number of threads. Throws what render() throws.
 std::optional<LimitView> view_limit(const LimitSurface& limit, const LimitFaces& faces, int width, int height);
 
 /// Names of the files.
