@@ -21,6 +21,14 @@ Color schlick(const Color& at_right_angles, double cosine) {
     return (1 - rest) * at_right_angles + rest * Color{1, 1, 1};
 }
 
+constexpr double kLeastLost = 2e-3;  // what smoother metals lose is left out: it is at grazing angles only, where it would be found by few samples of great weight
+
+/// Of samples: as much as single reflections give back, for metals; `coat_share` for others.
+double share_of_facets(const Material& m, double coat_share, const Point& out) {
+    if (m.kind != Material::Kind::metal) return coat_share;
+    return 1 - mean_facet_albedo(m.roughness) < kLeastLost ? 1 : facet_albedo(m.roughness, out.z);
+}
+
 }  // namespace
 
 double fresnel(double cosine, double ior) {
@@ -38,7 +46,7 @@ double mean_fresnel(double n) {  // Walsh 1926, as in Duntley, The Optical Prope
 
 Bsdf::Bsdf(const Material& material, const Color& color, bool inside)
     : material_(material), color_(color), inside_(inside), alpha_(std::max(1e-3, material.roughness * material.roughness)) {
-    if (material.kind == Material::Kind::metal) coat_share_ = mean_facet_albedo(material.roughness);
+    if (material.kind == Material::Kind::metal) coat_share_ = 1;
     if (material.kind == Material::Kind::plastic) {
         const double mean = mean_fresnel(material.ior), coat = mean + 0.1, base = 0.9 * max_of(color);
         coat_share_ = coat / (coat + base);
@@ -58,7 +66,7 @@ Color Bsdf::coat(const Point& out, const Point& in) const {
 /// much each lacks (Kulla and Conty, Revisiting Physically Based Shading at Imageworks, SIGGRAPH 2017 course).
 Color Bsdf::between_facets(const Point& out, const Point& in) const {
     const double mean = mean_facet_albedo(material_.roughness), lost = 1 - mean;
-    if (lost < 1e-4) return {};
+    if (lost < kLeastLost) return {};
     const double shape = (1 - facet_albedo(material_.roughness, out.z)) * (1 - facet_albedo(material_.roughness, in.z)) / (kPi * lost) * in.z;
     const auto one = [&](double at_right_angles) {
         const double f = at_right_angles + (1 - at_right_angles) / 21;  // Schlick's approximation on average over the cosine
@@ -91,14 +99,15 @@ double Bsdf::coat_density(const Point& out, const Point& in) const {
 
 double Bsdf::density(const Point& out, const Point& in) const {
     if (specular() || out.z <= 0 || in.z <= 0) return 0;
-    return (coat_share_ > 0 ? coat_share_ * coat_density(out, in) : 0) + (1 - coat_share_) * in.z / kPi;
+    const double share = share_of_facets(material_, coat_share_, out);
+    return (share > 0 ? share * coat_density(out, in) : 0) + (1 - share) * in.z / kPi;
 }
 
 Bsdf::Sample Bsdf::sample(const Point& out, double lobe, const Vec2& s) const {
     if (out.z <= 0) return {};
     if (specular()) return refracted(out, lobe);
     Sample r;
-    if (lobe < coat_share_) {
+    if (lobe < share_of_facets(material_, coat_share_, out)) {
         const Point h = seen_facet(out, alpha_, s);
         r.direction = 2 * dot(out, h) * h - out;
     } else {
