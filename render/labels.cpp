@@ -12,7 +12,7 @@ namespace isoparm {
 namespace {
 
 // What a place costs. Nothing may lie outside or on another label if there is any other place.
-constexpr double kOutside = 1000, kOnLabel = 300, kOnLine = 9, kWrongSide = 2, kFar = 1.0, kNextAnchor = 0.5,
+constexpr double kOutside = 1000, kOnLabel = 300, kOnLine = 1.3, kWrongSide = 2, kFar = 1.0, kNextAnchor = 0.5,
                  kHidden = 6, kLeader = 6;
 constexpr double kNear[] = {0.0, 1.0, 2.2}, kAway[] = {4.0, 6.0, 9.0};  // distances; at the latter with leaders
 
@@ -101,7 +101,7 @@ private:
             const double in = 0.1 * request.size + o.radius - distance_to(box, o.at);
             if (in > 0) covered += std::min(1.0, in / (0.1 * request.size));
         }
-        cost += kOnLine * covered / request.size * 4;
+        cost += kOnLine * covered;
         const double away = std::hypot(anchor.away.x, anchor.away.y);
         if (side < 8 && away > 0) {
             const auto [x, y] = direction(side);

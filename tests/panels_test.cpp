@@ -173,6 +173,23 @@ TEST(Insets, LinesOfThePictureEndAtTheirFrames) {
     EXPECT_LT(image.at(25, 100)[1], 0.01) << "the red line";
     EXPECT_GT(image.at(75, 100)[1], 0.99) << "not in the frame";
 }
+TEST(Mirrors, KeepParameterLinesInTheRaster) {
+    for (const bool metal : {false, true}) {
+        Scene scene = scene_from(R"json({ "isoparm": 1, "surfaces": { "S": { "type": "bilinear", "points": [[0,0,0], [1,0,0], [0,1,0], [1,1,0]] } },
+            "objects": [{ "surface": "S", "color": "#fff", "isolines": { "u": 3, "v": 3, "width": 4, "opacity": 1 } }, { "point": [0,0,1] }],
+            "camera": { "eye": [0.5,0.4,5], "target": [0.5,0.4,0], "up": [0,1,0], "orthographic": 2 }, "image": { "width": 80, "height": 80, "samples": 4 }, "lighting": {} })json");
+        if (metal) scene.objects[1].material.kind = Material::Kind::metal;
+        RenderOptions options;
+        options.vectors = true;
+        const Picture p = render(scene, options);
+        std::size_t lines = 0;
+        for (const DrawnPart& part : p.drawn)
+            for (const DrawingItem& item : part.drawing) lines += std::holds_alternative<Polyline>(item.shape);
+        EXPECT_EQ(lines > 0, !metal);
+        // The line u = 1/2 through the middle of the sheet, on white.
+        EXPECT_EQ(p.image.at(40, 28)[0] < 0.1, metal) << p.image.at(40, 28)[0];
+    }
+}
 TEST(Layouts, CameraPrintAndRenderHaveTheSameLettersOnPaper) {
     const Scene scene = scene_from(kPanels);
     RenderOptions options;

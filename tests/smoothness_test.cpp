@@ -149,6 +149,14 @@ TEST(JumpHeat, IsTheAngleAndTheCurvatureThatWerePlanted) {
     EXPECT_EQ(scale_of(heat, edges, 3).high, 30);
     heat.top = 20;
     EXPECT_TRUE(scale_of(heat, edges, 3).above);
+    // What is rounding for its size has no colours of its own, whatever the size.
+    for (const double size : {1e-6, 1.0, 1e6}) {
+        JumpHeat curvature;
+        curvature.of = JumpHeat::Of::g2;
+        const std::vector<HotEdge> smooth{{{{0, 0, 0}, {1, 0, 0}}, {1e-8 / size, 0}}}, bent{{{{0, 0, 0}, {1, 0, 0}}, {0.3 / size, 0}}};
+        EXPECT_DOUBLE_EQ(scale_of(curvature, smooth, size).high, rounded_up(1 / size));
+        EXPECT_NEAR(scale_of(curvature, bent, size).high, 0.3 / size, 1e-9 / size);
+    }
     const Patch bend = make_bezier_patch({{{0, 0, 0}, {0, 2, 0}}, {{0.5, 0, 0}, {0.5, 2, 0}}, {{1, 0, 0.35}, {1, 2, 0.35}}});
     const auto bent = hot_edges({{"a", left}, {"b", bend}}, JumpHeat::Of::g2, 3);
     ASSERT_EQ(bent.size(), 1u);
