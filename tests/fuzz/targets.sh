@@ -17,6 +17,6 @@ fuzz_target() {
     surface) length=200 ;;
     esac
     mkdir -p "$corpus" "$root/tests/fuzz/corpus"
-    "$folder/fuzz_$name" -max_len="$length" -timeout=10 -rss_limit_mb=1024 -entropic=0 -print_final_stats=1 -artifact_prefix="$folder/fuzz_$name-" "$@" \
+    "$folder/fuzz_$name" -max_len="$length" -timeout=30 -entropic=0 -print_final_stats=1 -artifact_prefix="$folder/fuzz_$name-" "$@" \
         "$corpus" "$root/tests/fuzz/corpus" ${more[@]+"${more[@]}"}
 }
