@@ -9,10 +9,10 @@
 #if defined(__x86_64__) && defined(__GNUC__)
 #define ISOPARM_ISA_LOOPS 1
 #define ISOPARM_FOR_AVX2 [[gnu::target("avx2")]]
+// Everything between one of ISOPARM_BEGIN_... and ISOPARM_END_ISA is for that instruction set: vectors that are written out need that, as the compiler
+// takes them apart before it inlines. Such loops stand in a file .inc, which is included once for each set, in a namespace of its own.
 #ifdef __clang__
 #define ISOPARM_FOR_AVX512 [[gnu::target("avx512f,avx512dq,avx512vl")]]
-/// Everything between one of these and ISOPARM_END_ISA is for that instruction set: vectors that are written out need that, as the compiler
-/// takes them apart before it inlines.
 #define ISOPARM_BEGIN_AVX2 _Pragma("clang attribute push(__attribute__((target(\"avx2\"))), apply_to = function)")
 #define ISOPARM_BEGIN_AVX512 _Pragma("clang attribute push(__attribute__((target(\"avx512f,avx512dq,avx512vl\"))), apply_to = function)")
 #define ISOPARM_END_ISA _Pragma("clang attribute pop")

@@ -1,17 +1,15 @@
-// The pragmas mark the functions of each copy of the kernel with an instruction set, as the attributes in batch_kernel.cpp do; what it calls from
-// outside holds no loops.
 #include "triangle_lanes.h"
 
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "isa_loops.h"
 #include "quiet.h"
 #include "scalar/safe.h"
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#ifdef ISOPARM_ISA_LOOPS
 #include <immintrin.h>
-#define ISOPARM_ISA_LOOPS 1
 #endif
 
 namespace isoparm {
@@ -23,44 +21,28 @@ namespace baseline {
 #define ISOPARM_LANES 2
 typedef double Two __attribute__((vector_size(16)));
 inline Two square_root(Two x) { return Two{std::sqrt(x[0]), std::sqrt(x[1])}; }
-#include "triangle_lanes_kernel.h"
+#include "triangle_lanes_loops.inc"
 #undef ISOPARM_LANES
 }  // namespace baseline
 
 #ifdef ISOPARM_ISA_LOOPS
-
-#ifdef __clang__
-#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#endif
+ISOPARM_BEGIN_AVX2
 namespace avx2 {
 #define ISOPARM_LANES 4
 inline __m256d square_root(__m256d x) { return _mm256_sqrt_pd(x); }
-#include "triangle_lanes_kernel.h"
+#include "triangle_lanes_loops.inc"
 #undef ISOPARM_LANES
 }  // namespace avx2
-#ifdef __clang__
-#pragma clang attribute pop
-#pragma clang attribute push(__attribute__((target("avx512f,avx512dq,avx512vl"))), apply_to = function)
-#else
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,avx512vl")
-#endif
+ISOPARM_END_ISA
+
+ISOPARM_BEGIN_AVX512
 namespace avx512 {
 #define ISOPARM_LANES 8
 inline __m512d square_root(__m512d x) { return _mm512_mask_sqrt_pd(x, 0xff, x); }
-#include "triangle_lanes_kernel.h"
+#include "triangle_lanes_loops.inc"
 #undef ISOPARM_LANES
 }  // namespace avx512
-#ifdef __clang__
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-
+ISOPARM_END_ISA
 #endif
 
 }  // namespace

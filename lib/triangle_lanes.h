@@ -1,6 +1,6 @@
 // triangle_lanes.h -- the bounds of eight triangles of one polynomial cell at once; internal to bound_cell.cpp and refine.cpp.
 //
-// The loops exist once in the source (triangle_lanes_kernel.h) and once for each instruction set in the binary; which one runs is chosen at run
+// The loops exist once in the source (triangle_lanes_loops.inc) and once for each instruction set in the binary; which one runs is chosen at run
 // time (batch.h). All give the bits of bound_triangle() with the cell's own SecondDerivatives over the triangle's box.
 #pragma once
 #include "batch.h"

@@ -14,7 +14,7 @@ constexpr double kRounding = 1e-14;  // relative: far above that of a few operat
 
 namespace baseline {
 #define ISOPARM_LANES 2
-#include "exact_loops.h"
+#include "exact_loops.inc"
 #undef ISOPARM_LANES
 }  // namespace baseline
 
@@ -22,7 +22,7 @@ namespace baseline {
 ISOPARM_BEGIN_AVX2
 namespace avx2 {
 #define ISOPARM_LANES 4
-#include "exact_loops.h"
+#include "exact_loops.inc"
 #undef ISOPARM_LANES
 }  // namespace avx2
 ISOPARM_END_ISA
@@ -30,7 +30,7 @@ ISOPARM_END_ISA
 ISOPARM_BEGIN_AVX512
 namespace avx512 {
 #define ISOPARM_LANES 8
-#include "exact_loops.h"
+#include "exact_loops.inc"
 #undef ISOPARM_LANES
 }  // namespace avx512
 ISOPARM_END_ISA

@@ -61,8 +61,8 @@ std::string text(const char* format, double a, double b) {
 
 Image difference_sheet(const LimitView& v) {
     Sheet sheet(v.width, v.height, 3);
-    sheet.add(text("colours: at most %.2g, RMS %.2g", v.color_max, v.color_rms), scale("largest of R, G, B$", v.color_max), v.pictures.color);
-    sheet.add(text("normals: at most %.3g, on average %.2g degrees", v.normal_max_degrees, v.normal_mean_degrees), scale("degrees$", v.normal_max_degrees), v.pictures.degrees);
+    sheet.add(text("colours: at most %.2g, RMS %.2g", v.color_max, v.color_rms), scale("largest of R, G, B", v.color_max), v.pictures.color);
+    sheet.add(text("normals: at most %.3g, on average %.2g degrees", v.normal_max_degrees, v.normal_mean_degrees), scale("degrees", v.normal_max_degrees), v.pictures.degrees);
     const Color both = linear_from_srgb(0.84, 0.85, 0.86), limit = linear_from_srgb(0.84, 0.37, 0), composite = linear_from_srgb(0, 0.45, 0.70);
     sheet.add(text("silhouettes: %.0f pixels differ, by %.3g; orange: limit only, blue: composite only", v.silhouette_differing, v.silhouette_distance),
               [&](std::size_t i) { return v.pictures.inside[i] == 3 ? both : v.pictures.inside[i] == 1 ? limit : v.pictures.inside[i] == 2 ? composite : Color{1, 1, 1}; });
