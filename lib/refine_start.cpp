@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "dice.h"
-#include "refine.h"
+#include "patch_builder.h"
 
 namespace isoparm {
 
@@ -100,136 +99,10 @@ void Refinement::cut_rims(const std::vector<Start>& starts) {
     rim_pieces_.push_back(std::uint32_t(rim_nodes_.size()));
 }
 
-namespace {
-
-using Chain = std::vector<std::uint32_t>;  // corners along a line
-
-/// Makes the corners, edges and triangles of one patch.
-class Builder {
-public:
-    /// About as many triangles are to come.
-    Builder(PatchMesh& mesh, double triangles) : mesh_(mesh) {
-        const auto most = std::size_t(1.2 * triangles + 64);  // with those that bisection adds
-        mesh_.uv.reserve(most / 2), mesh_.vertex.reserve(most / 2), mesh_.slack.reserve(most / 2), first_.reserve(most / 2);
-        mesh_.triangles.reserve(most), mesh_.settled.reserve(most), mesh_.fresh.reserve(most), mesh_.edges.reserve(most / 2 * 3), next_.reserve(most / 2 * 3);
-    }
-
-    std::uint32_t corner(const Vec2& p, std::uint32_t vertex = kNone) {
-        mesh_.uv.push_back(p);
-        mesh_.vertex.push_back(vertex);
-        first_.push_back(kNone);
-        return std::uint32_t(mesh_.uv.size() - 1);
-    }
-    /// The edge between two corners.
-    std::uint32_t edge(std::uint32_t a, std::uint32_t b) {
-        const auto [low, high] = std::minmax(a, b);
-        for (auto e = first_[low]; e != kNone; e = next_[e])
-            if (std::max(mesh_.edges[e].a, mesh_.edges[e].b) == high) return e;
-        mesh_.edges.emplace_back();
-        mesh_.edges.back().a = a, mesh_.edges.back().b = b;
-        next_.push_back(first_[low]);
-        return first_[low] = std::uint32_t(mesh_.edges.size() - 1);
-    }
-    void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-        if (mirrored_) std::swap(b, c);
-        PatchTriangle t;
-        t.corner = {a, b, c};
-        t.edge = {edge(a, b), edge(b, c), edge(c, a)};
-        t.cell = mesh_.cells.back().get();
-        const auto index = std::uint32_t(mesh_.triangles.size());
-        for (const auto e : t.edge) mesh_.edges[e].side[mesh_.edges[e].side[0] != kNone] = index;
-        mesh_.fresh.push_back(index);
-        mesh_.triangles.push_back(t);
-        mesh_.settled.push_back(kUnsettled);
-    }
-    /// Turns all triangles over: for chains in exchanged parameters.
-    void mirror(bool mirrored) { mirrored_ = mirrored; }
-    /// The strip between two chains that run the same way, the inner one to the left.
-    void strip(const Chain& outer, const Chain& inner, const Bends& bends) {
-        const auto& uv = mesh_.uv;
-        const Vec2 from = uv[outer.front()], way{uv[outer.back()].x - from.x, uv[outer.back()].y - from.y};
-        const auto reached = [&](const Chain& c, std::size_t i) {
-            const Vec2 p{0.5 * uv[c[i]].x + 0.5 * uv[c[i + 1]].x, 0.5 * uv[c[i]].y + 0.5 * uv[c[i + 1]].y};
-            return ((p.x - from.x) * way.x + (p.y - from.y) * way.y) / (way.x * way.x + way.y * way.y);
-        };
-        std::size_t i = 0, j = 0;
-        while (i + 1 < outer.size() || j + 1 < inner.size()) {
-            bool on_outer = j + 1 == inner.size();
-            if (!on_outer && i + 1 < outer.size()) {
-                // By the middles of the next pieces; where those are about level, along the diagonal that bends less.
-                const double lead = reached(outer, i) - reached(inner, j), level = 0.3 / double(std::max(outer.size(), inner.size()));
-                on_outer = std::abs(lead) < level ? !bends.less(uv[outer[i]], uv[inner[j + 1]], uv[outer[i + 1]], uv[inner[j]]) : lead < 0;
-            }
-            if (on_outer) triangle(outer[i], outer[i + 1], inner[j]), ++i;
-            else triangle(outer[i], inner[j + 1], inner[j]), ++j;
-        }
-    }
-
-private:
-    PatchMesh& mesh_;
-    bool mirrored_ = false;
-    Chain first_, next_;  // edges by their smaller corner
-};
-
-Chain backwards(const Chain& c) { return Chain(c.rbegin(), c.rend()); }
-
-/// A cell whose sides, in the direction of growing parameters, are given.
-void fill_cell(Builder& build, const Bends& bends, DiceGrid grid, const std::array<Chain, 4>& side) {
-    // Rows run from side `first` to side `last`, the lowest is `low`, the uppermost `high`.
-    const Chain &low = side[grid.columns ? 3 : 0], &high = side[grid.columns ? 1 : 2], &first = side[grid.columns ? 0 : 3], &last = side[grid.columns ? 2 : 1];
-    build.mirror(grid.columns);
-    if (grid.lines.size() == 2 && (first.size() > 2 || last.size() > 2)) {  // strips along the sides need something inside
-        grid.lines.insert(grid.lines.begin() + 1, 0.5 * grid.lines[0] + 0.5 * grid.lines[1]);
-        grid.rows.insert(grid.rows.begin() + 1, grid.rows[0].size() > grid.rows[1].size() ? grid.rows[0] : grid.rows[1]);
-    }
-    const bool fits_first = first.size() == grid.lines.size(), fits_last = last.size() == grid.lines.size(), fits = fits_first && fits_last;
-    const std::size_t n = grid.lines.size() - 1;
-    std::vector<Chain> rows{low};
-    Chain starts, ends;  // of the rows inside
-    for (std::size_t j = 1; j < n; ++j) {
-        std::vector<double>& at = grid.rows[j];
-        if (!fits && at.size() == 2) at.insert(at.begin() + 1, 0.5 * at[0] + 0.5 * at[1]);
-        Chain row;
-        if (fits_first) row.push_back(first[j]);
-        for (std::size_t i = 1; i + 1 < at.size(); ++i) row.push_back(build.corner(grid.columns ? Vec2{grid.lines[j], at[i]} : Vec2{at[i], grid.lines[j]}));
-        if (fits_last) row.push_back(last[j]);
-        starts.push_back(row.front()), ends.push_back(row.back());
-        rows.push_back(std::move(row));
-    }
-    rows.push_back(high);
-    for (std::size_t j = 0; j < n; ++j) build.strip(rows[j], rows[j + 1], bends);
-    if (!fits_first) build.strip(backwards(first), backwards(starts), bends);
-    if (!fits_last) build.strip(last, ends, bends);
-    build.mirror(false);
-}
-
-/// The triangular domain whose sides, counter-clockwise from u = v = 0, are given.
-void fill_triangle(Builder& build, const Bends& bends, int n, const std::array<Chain, 3>& sides) {
-    const bool fits = std::all_of(sides.begin(), sides.end(), [&](const Chain& c) { return c.size() == std::size_t(n) + 1; });
-    if (!fits) n = std::max(n, 3);
-    std::vector<Chain> at(std::size_t(n) + 1, Chain(std::size_t(n) + 1, kNone));
-    for (int i = 1; i < n; ++i)
-        for (int j = 1; i + j < n; ++j) at[i][j] = build.corner({double(i) / n, double(j) / n});
-    if (fits)
-        for (int i = 0; i <= n; ++i) at[i][0] = sides[0][i], at[n - i][i] = sides[1][i], at[0][n - i] = sides[2][i];
-    const int margin = fits ? 0 : 1;
-    for (int i = margin; i < n - margin; ++i)
-        for (int j = margin; i + j < n - margin; ++j) {
-            build.triangle(at[i][j], at[i + 1][j], at[i][j + 1]);
-            if (i + j + 1 < n - margin) build.triangle(at[i + 1][j], at[i + 1][j + 1], at[i][j + 1]);
-        }
-    if (fits) return;
-    std::array<Chain, 3> inner;
-    for (int i = 1; i <= n - 2; ++i) inner[0].push_back(at[i][1]), inner[1].push_back(at[n - 1 - i][i]), inner[2].push_back(at[1][n - 1 - i]);
-    for (int k = 0; k < 3; ++k) build.strip(sides[k], inner[k], bends);
-}
-
-}  // namespace
-
 void Refinement::build_patch(std::uint32_t member, const Start& start) {
     const Patch& patch = surface_[member].patch;
     PatchMesh& mesh = patches_[member];
-    Builder build(mesh, start.triangles);
+    PatchBuilder build(mesh, start.triangles);
     std::map<std::pair<double, double>, std::uint32_t> known;  // on the boundary, and where breaks cross
     const auto corner = [&](const Vec2& p, std::uint32_t vertex) {
         const auto [it, fresh] = known.try_emplace({p.x, p.y}, 0);

@@ -116,7 +116,7 @@ double Film::missed() const {
 }
 
 void Film::write(std::ostream& out) const {
-    put(out, round_), put(out, done_);
+    put(out, round_), put(out, done_), put(out, rays.rays), put(out, rays.undecided);
     for (const PixelSum& p : pixels_) put(out, p.color), put(out, p.alpha), put(out, p.used), put(out, p.seen);
     for (const Spread& s : spreads_) s.write(out);
     out.write(reinterpret_cast<const char*>(ended_.data()), static_cast<std::streamsize>(ended_.size()));
@@ -124,9 +124,9 @@ void Film::write(std::ostream& out) const {
 
 bool Film::read(std::istream& in) {
     char done = 0;
-    get(in, round_), get(in, done);
+    get(in, round_), get(in, done), get(in, rays.rays), get(in, rays.undecided);
     done_ = done != 0;
-    bool good = in && (done == 0 || done == 1);
+    bool good = in && (done == 0 || done == 1) && rays.undecided <= rays.rays;
     for (PixelSum& p : pixels_) {
         get(in, p.color), get(in, p.alpha), get(in, p.used), get(in, p.seen);
         good = good && finite(p.color) && std::isfinite(p.alpha);

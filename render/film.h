@@ -80,6 +80,11 @@ public:
     /// The part of the pixels that ended without reaching the target.
     double missed() const;
 
+    /// Rays that the samples took, of pictures whose rays meet the surfaces themselves, and those of them that were left undecided.
+    struct RayCount {
+        std::uint64_t rays = 0, undecided = 0;
+    } rays;
+
     /// As a checkpoint holds it: always the same number of bytes.
     void write(std::ostream& out) const;
     /// False, and nothing is to be done with the film any more: these are not the bytes of such a film.

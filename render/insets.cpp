@@ -22,10 +22,10 @@ Polyline rectangle(const Frame& b, double width) { return {{{b.left, b.top}, {b.
 std::vector<std::array<Vec2, 2>> connections(const Frame& a, const Frame& b) {
     const bool left = a.left < b.left, right = a.right < b.right, top = a.top < b.top, bottom = a.bottom < b.bottom;
     std::vector<std::array<Vec2, 2>> lines;
-    if (left != bottom) lines.push_back({Vec2{a.left, a.top}, Vec2{b.left, b.top}});
-    if (left == top) lines.push_back({Vec2{a.left, a.bottom}, Vec2{b.left, b.bottom}});
-    if (right == bottom) lines.push_back({Vec2{a.right, a.top}, Vec2{b.right, b.top}});
-    if (right != top) lines.push_back({Vec2{a.right, a.bottom}, Vec2{b.right, b.bottom}});
+    if (left != top) lines.push_back({Vec2{a.left, a.top}, Vec2{b.left, b.top}});
+    if (left == bottom) lines.push_back({Vec2{a.left, a.bottom}, Vec2{b.left, b.bottom}});
+    if (right == top) lines.push_back({Vec2{a.right, a.top}, Vec2{b.right, b.top}});
+    if (right != bottom) lines.push_back({Vec2{a.right, a.bottom}, Vec2{b.right, b.bottom}});
     return lines;
 }
 

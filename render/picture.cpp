@@ -146,7 +146,7 @@ struct ViewRendering {
         p.image = blank(area.width(), area.height(), {});
         p.layers = blank_layers(area.width(), area.height(), aovs);
         resolve(tracer, film, AovReader(scene, traced, camera, aovs), area, p.image, p.layers);
-        p.rays = traced.embree->count();
+        p.rays = {film.rays.rays, film.rays.undecided};
         put_over(overlay(scene, view.objects, traced, camera, how.pixel, view.letter, lines, {view.inset.has_value(), view.covered}), -area.x0, -area.y0, view.width, view.height, how.vectors, p);
         return p;
     }
@@ -271,7 +271,12 @@ private:
                 check_work(p.rendering->traced, how_.most_halved, (now_ + others + n) / std::max(1.0, expected_));
                 tell(before, others + (here = n));
             };
-            if (!trace_round(p.rendering->tracer, p.rendering->film, options_.tile, pause, progress)) return false;
+            Film& film = p.rendering->film;
+            const auto first = p.rendering->traced.embree->count();
+            const bool whole = trace_round(p.rendering->tracer, film, options_.tile, pause, progress);
+            const auto last = p.rendering->traced.embree->count();
+            film.rays.rays += last.rays - first.rays, film.rays.undecided += last.undecided - first.undecided;
+            if (!whole) return false;
             others += here;
         }
         return true;

@@ -132,10 +132,11 @@ void Tracer::add_light(const PixelSampler& sampler, const Ray* rays, int first, 
         lighting_.shade(scene_, sampler, surfels, count, light);
         for (int k = 0; k < count; ++k) {
             Rgba& pixel = seen[met[begin + k].ray];
-            if (surfels[k].ground) {  // white times 1 + light: what is lacking hides, what has a colour is added
+            if (surfels[k].ground) {  // the background, or white, times 1 + light: what is lacking hides, what has a colour is added
                 const Color shade = ground_->shadow * light[k];
                 const double grey = (shade.x + shade.y + shade.z) / 3, open = 1 - pixel.alpha;
-                pixel.color += open * (shade - Color{grey, grey, grey}), pixel.alpha -= open * grey;
+                const Color tint = shade - Color{grey, grey, grey};
+                pixel.color += open * (background_ ? product(*background_, tint) : tint), pixel.alpha -= open * grey;
                 continue;
             }
             if (surfels[k].ink_cover > 0) pixel.add_behind(surfels[k].ink, surfels[k].ink_cover);

@@ -248,6 +248,24 @@ TEST(Ground, PaperWithoutShadowIsWhiteToTheBit) {
         for (const float c : image.pixels) EXPECT_EQ(c, 0.0f) << lighting;
     }
 }
+TEST(Ground, DarkensABackgroundAndAddsNoLight) {
+    // Light of two colours: shadows are not grey.
+    const auto picture = [&](const char* background) {
+        const TemporaryFolder folder;
+        write_all(folder / "s.json", scene_text(R"({"point": [0,0,1], "radius": 1})", R"("lighting": {"lights": [{"type": "directional", "direction": [1,1,-1], "irradiance": [3,1,0.2]}, {"type": "environment", "radiance": [0.1,0.3,0.9]}]},
+            "camera": {"eye": [0,-9,8], "target": [0,0,0], "up": [0,0,1]}, "image": {"width": 24, "height": 18, "samples": 64, "background": ")" + std::string(background) + R"("}, "ground": true)"));
+        return render(load_scene(folder / "s.json"), {}).image.pixels;
+    };
+    const auto black = picture("black"), white = picture("white"), colored = picture("#00ff00");
+    int shadows = 0;
+    for (std::size_t i = 0; i < white.size(); i += 4) {
+        for (int k = 0; k < 3; ++k) EXPECT_GE(black[i + k], -1e-6f);
+        if (black[i] + black[i + 1] + black[i + 2] > 1e-6f) continue;  // the ball
+        shadows += white[i] < 0.95f;
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(colored[i + k], k == 1 ? white[i + 1] : 0, 1e-5);
+    }
+    EXPECT_GT(shadows, 5);
+}
 TEST(Ground, LiesUnderTheLowestPoint) {
     const TemporaryFolder folder;
     const auto picture = [&](const std::string& ground) {

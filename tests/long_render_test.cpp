@@ -75,6 +75,24 @@ TEST(LongRender, StoppedAndResumedAnywhereItEndsWithTheSamePixels) {
     }
 }
 
+TEST(LongRender, ExactPicturesCountTheirRaysAcrossStops) {
+    const Scene scene = scene_of(scene_text(R"(, "samples": 32)"));
+    RenderOptions options;
+    options.exact = true;
+    const Picture whole = render(scene, options);
+    EXPECT_GT(whole.rays.rays, 10000u);
+    const TemporaryFolder folder;
+    options.checkpoint = {folder / "checkpoint", "scene 1\n", 60};
+    options.stop = after(500);
+    EXPECT_FALSE(render(scene, options).whole);
+    options.stop = {};
+    options.preview = [](const Picture&) {};
+    const Picture resumed = render(scene, options);
+    EXPECT_TRUE(same(resumed, whole));
+    EXPECT_EQ(resumed.rays.rays, whole.rays.rays);
+    EXPECT_EQ(resumed.rays.undecided, whole.rays.undecided);
+}
+
 TEST(LongRender, CheckpointsOfOtherPicturesAndDamagedOnesAreRefused) {
     const Scene scene = scene_of(scene_text(R"(, "samples": 64)"));
     const TemporaryFolder folder;

@@ -8,6 +8,7 @@
 #include "error.h"
 #include "layout.h"
 #include "legend.h"
+#include "samples.h"
 #include "text_cairo.h"
 
 namespace isoparm {
@@ -158,6 +159,33 @@ TEST(Insets, ARegionFillsItsFrame) {
     const Vec2 p = whole.project({0, 0, 0}), q = part.project({0, 0, 0});
     EXPECT_NEAR(q.x, 2 * (p.x - 50), 1e-9);
     EXPECT_NEAR(q.y, 2 * (p.y - 80), 1e-9);
+}
+// Wherever the two lie; one that holds the other has none.
+TEST(Insets, ConnectingLinesCrossNoFrame) {
+    tests::Random random(5);
+    int lines = 0;
+    for (int k = 0; k < 300; ++k) {
+        std::vector<View> views(2);
+        views[0].width = views[0].height = 1000;
+        View& v = views[1];
+        v.inset = Inset{};
+        v.inset->lines = true;
+        v.x = int(800 * random.number()), v.y = int(800 * random.number()), v.width = 20 + int(180 * random.number()), v.height = 20 + int(180 * random.number());
+        v.zoom = {800 * random.number(), 800 * random.number(), 20 + 180 * random.number(), 1000, 1000};
+        const Drawing drawing = frames_of(views, 1);
+        const auto corners = [&](const DrawingItem& item) { return std::get<Polyline>(item.shape).points; };
+        const auto part = corners(drawing.front()), frame = corners(drawing.back());
+        for (std::size_t i = 1; i + 1 < drawing.size(); ++i) {
+            const auto line = corners(drawing[i]);
+            ++lines;
+            for (double t = 0.001; t < 1; t += 0.001) {
+                const Vec2 p{line[0].x + t * (line[1].x - line[0].x), line[0].y + t * (line[1].y - line[0].y)};
+                for (const auto& box : {part, frame})
+                    ASSERT_FALSE(p.x > box[0].x + 1e-9 && p.x < box[2].x - 1e-9 && p.y > box[0].y + 1e-9 && p.y < box[2].y - 1e-9) << k << " at " << t;
+            }
+        }
+    }
+    EXPECT_GT(lines, 400);
 }
 TEST(Insets, LinesOfThePictureEndAtTheirFrames) {
     Scene scene = scene_from(R"json({ "isoparm": 1, "curves": { "c": { "type": "line", "points": [[-1,0,0], [1,0,0]] } }, "objects": [{ "curve": "c", "line": 4, "color": "#f00" }],

@@ -169,6 +169,35 @@ TEST(Tessellate, TheDomainIsCoveredWhateverTheKnots) {
     }
 }
 
+// Proofs take triangles that cover the domain once. Rows of different lengths, as towards a pole, beside a dense rim tempt strips to fold over.
+TEST(Tessellate, EveryTriangleTurnsTheSameWayInTheDomain) {
+    Random random(38);
+    std::size_t triangles = 0;
+    for (int k = 0; k < 12; ++k) {
+        Grid<Point> net(4, std::vector<Point>(4));
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) net[i][j] = {i / 3.0 * (k % 4 == 3 ? 1 : j / 3.0), j / 3.0, j == 0 && k % 4 != 3 ? 0 : 0.25 * (2 * random.number() - 1)};
+        if (k % 4 == 1) std::swap(net[0], net[3]), std::swap(net[1], net[2]);
+        if (k % 4 == 2)
+            for (auto& row : net) std::swap(row[0], row[3]), std::swap(row[1], row[2]);
+        const Composite surface{{"s", make_bezier_patch(net)}};
+        for (double relative = 4e-3; relative > 3e-4; relative *= 0.83) {
+            const Tessellation t = tessellate_relative(surface, relative, k % 2 ? Measure::parametric : Measure::geometric);
+            for (const MeshPart& part : t.mesh.parts) {
+                auto all = part.triangles;
+                if (part.flipped)
+                    for (auto& c : all) std::swap(c[1], c[2]);
+                all.insert(all.end(), part.left_out.begin(), part.left_out.end());
+                triangles += all.size();
+                for (const auto& c : all) {
+                    const Vec2 &p = part.uv[c[0]], &q = part.uv[c[1]], &r = part.uv[c[2]];
+                    EXPECT_GT((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x), 0) << "net " << k << " at " << relative;
+                }
+            }
+        }
+    }
+    EXPECT_GT(triangles, 10000u);
+}
 TEST(Tessellate, NothingSmallerThanTheToleranceIsLost) {
     const Patch plane = make_bezier_patch({{{0, 0, 0}, {0, 1, 0}}, {{1, 0, 0}, {1, 1, 0}}});
     const Patch tiny = transformed(plane, Transform::translate({10, 0, 0}) * Transform::scale({1e-8, 1e-8, 1e-8}));
