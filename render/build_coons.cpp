@@ -68,6 +68,12 @@ GordonNetwork on_a_grid(const GordonNetwork& given, const Json& j, SceneBuilder&
 }  // namespace
 
 CoonsCurves frame_of(const Json& j, SceneBuilder& scene) {
+    if (const auto loop = j.find("loop")) {
+        for (const char* key : {"c0", "c1", "d0", "d1", "repair"})
+            if (const auto also = j.find(key)) also->expected("\"loop\" without \"" + std::string(key) + "\": a loop gives all four curves and is always put in order");
+        const auto side = scene.curves(*loop, 4, 4);
+        return {side[0], side[2], side[3], side[1]};  // around: c0, d1, c1, d0; fitted() turns and exchanges what does not run so
+    }
     return {scene.curve(j, "c0", "the curve x(u,0)"), scene.curve(j, "c1", "the curve x(u,1)"), scene.curve(j, "d0", "the curve x(0,v)"),
             scene.curve(j, "d1", "the curve x(1,v)")};
 }

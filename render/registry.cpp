@@ -28,7 +28,7 @@ std::span<const SceneType<BuiltSurface>> surface_types() {
         {"bezier", {"points", "weights"}, build_bezier_patch},
         {"bspline", {"degree", "knots", "points", "weights"}, build_bspline_patch},
         {"bilinear", {"points"}, build_bilinear},
-        {"coons", {"c0", "c1", "d0", "d1", "blend", "part", "repair"}, build_coons},
+        {"coons", {"c0", "c1", "d0", "d1", "loop", "blend", "part", "repair"}, build_coons},
         {"coons_hermite", {"f", "g", "twist", "part", "repair"}, build_coons_hermite},
         {"hermite", {"points", "du", "dv", "duv"}, build_hermite_patch},
         {"gordon", {"u_curves", "v_nodes", "v_curves", "u_nodes", "blend", "part", "repair", "tolerance"}, build_gordon},

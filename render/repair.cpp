@@ -89,6 +89,7 @@ Cure<ControlFrame> cure(const ControlFrame& given) {
 }
 
 bool repair_wanted(const Json& surface, const SceneBuilder& scene) {
+    if (surface.find("loop")) return true;  // its curves come in any order and direction
     const auto repair = surface.find("repair");
     return repair && scene.values().boolean(*repair);
 }

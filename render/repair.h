@@ -40,7 +40,7 @@ Cure<GordonNetwork> cure(const GordonNetwork& given);
 /// A reversed spline has its knots mirrored.
 Cure<ControlFrame> cure(const ControlFrame& given);
 
-/// The value of "repair"; false when missing.
+/// The value of "repair"; false when missing, true for a "loop".
 bool repair_wanted(const Json& surface, const SceneBuilder& scene);
 /// Throws the error again, with advice.
 [[noreturn]] void throw_advised(const Error& error, const std::string& advice);

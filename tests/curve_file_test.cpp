@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -290,6 +291,37 @@ TEST(CurveFiles, BecomePatchesOverLoops) {
     EXPECT_TRUE(contains(o.err, "curves repaired: c1 reversed, d0 reversed")) << o.err;
     const Outcome eval = run("eval scene.json --surface Q --at 0.5,0.5 --json", t.path());
     EXPECT_TRUE(contains(eval.out, "\"S\": [0.5, 0.5, 0.25]")) << eval.out;
+}
+/// The sides of a bilinear patch as a loop; each: its ends.
+std::string loop_of(const std::vector<std::array<std::string, 2>>& sides) {
+    std::string text = std::to_string(sides.size()) + "\n";
+    for (const auto& [from, to] : sides) text += "1 4 0 0 1 1\n2 " + from + " " + to + "\n";
+    return text;
+}
+TEST(CurveFiles, LoopsInAnyOrderAndDirectionSpanOneCoonsPatch) {
+    const TemporaryFolder t;
+    const std::string A = "0 0 0", B = "1 0 0", C = "1 1 1", D = "0 1 0";
+    write_all(t / "scene.json", R"({ "isoparm": 1, "surfaces": { "Q": { "type": "coons", "loop": { "type": "file", "path": "q.lop" } } }, "objects": [ { "surface": "Q" } ] })");
+    const std::vector<std::array<std::string, 2>> around{{A, B}, {B, C}, {C, D}, {D, A}}, mixed{{C, D}, {A, B}, {C, B}, {A, D}};
+    for (const auto& sides : {around, mixed}) {
+        write_all(t / "q.lop", loop_of(sides));
+        const Outcome o = run("eval scene.json --surface Q --at 0.5,0.5 --json", t.path());
+        EXPECT_EQ(o.code, 0) << o.err;
+        EXPECT_TRUE(contains(o.out, "\"S\": [0.5, 0.5, 0.25]")) << o.out;
+    }
+    write_all(t / "q.lop", loop_of(around));
+    const Outcome first = run("eval scene.json --surface Q --at 0.25,0 --json", t.path());
+    EXPECT_TRUE(contains(first.out, "\"S\": [0.25, 0, 0]")) << "the first is c0 as it is. " << first.out;
+    const auto fails = [&](const std::vector<std::array<std::string, 2>>& sides, const std::string& message, int code) {
+        write_all(t / "q.lop", loop_of(sides));
+        const Outcome o = run("info scene.json", t.path());
+        EXPECT_EQ(o.code, code) << o.err;
+        EXPECT_TRUE(contains(o.err, message) && contains(o.err, "scene.json:1:")) << o.err;
+    };
+    fails({{A, B}, {B, C}, {C, A}}, "Q.loop: found a file of 3 curves, expected 4", 65);
+    fails({{A, B}, {B, C}, {C, D}, {D, "0 0.125 0"}}, "0.125", 65);
+    write_all(t / "scene.json", R"({ "isoparm": 1, "surfaces": { "Q": { "type": "coons", "loop": { "type": "file", "path": "q.lop" }, "repair": false } } })");
+    fails(around, "expected \"loop\" without \"repair\"", 65);
 }
 TEST(CurveFiles, WrongOnesAreErrorsOfTheScene) {
     const TemporaryFolder t;
