@@ -107,7 +107,9 @@ TEST(GlbReader, BadFilesAreRefusedWithTheirPlace) {
     refused(glb_of(good, bytes_of<float>({NAN}) + numbers().substr(4)), "the coordinate nan of vertex 0");
     refused(glb_of(scene_of(R"(, "indices": 3)"), numbers().substr(0, 80) + bytes_of<std::uint32_t>({0, 1, 5, 0, 0})), "found the index 5 as number 2, expected one below 5");
     refused(glb_of(scene_of(R"(, "indices": 0)"), numbers()), "expected \"SCALAR\"");
-    refused(glb_of(scene_of("", R"([{"mesh": 0}])", R"(, "extensionsRequired": ["KHR_draco_mesh_compression"])"), numbers()), "no extension that stores meshes another way");
+    for (const char* name : {"KHR_draco_mesh_compression", "KHR_mesh_quantization", "EXT_anything"})
+        refused(glb_of(scene_of("", R"([{"mesh": 0}])", R"(, "extensionsRequired": [")" + std::string(name) + "\"]"), numbers()), "no extension but such as say how surfaces look");
+    EXPECT_EQ(read_glb(glb_of(scene_of("", R"([{"mesh": 0}])", R"(, "extensionsRequired": ["KHR_materials_unlit"])"), numbers()), "a.glb").mesh.triangles.empty(), false);
 }
 /// A file of some kilobytes that shows what it holds a million times.
 TEST(GlbReader, WhatIsShownAgainAndAgainHasALimit) {
