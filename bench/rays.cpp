@@ -142,6 +142,8 @@ void add(std::vector<Case>& cases, const std::string& scene, const std::string& 
 std::vector<Case> ray_cases() {
     std::vector<Case> cases;
     add(cases, "teapot", "teapot");
+    add(cases, "coons", "bicubic Coons patch");
+    add(cases, "sphere", "eight rational octants");
     add(cases, "side_vertex", "side-vertex triangle");
     return cases;
 }

@@ -166,6 +166,7 @@ template <class Use> void meet_leaf(const int* valid, RTCRayN* rays, unsigned n,
         in_place = in_place && ray[count] == lane[count];
         ++count;
     }
+    if (count == 0) return;
     in_place = in_place && count > EmbreeScene::packet / 2;
     RayPacket some;
     std::uint32_t active = 0;
@@ -441,6 +442,7 @@ bool EmbreeScene::translucent() const { return state_->translucent; }
 double EmbreeScene::rounding() const { return state_->rounding; }
 
 void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
+    if (n == 0) return;
     const State& s = *state_;
     alignas(64) RTCRayHit16 r;
     alignas(64) int valid[packet];

@@ -59,7 +59,7 @@ public:
     };
     Count count() const;
 
-    /// The nearest hit of each of n <= packet rays. Not of a scene that is translucent().
+    /// The nearest hit of each of n <= packet rays; none, of none. Not of a scene that is translucent().
     void intersect(const Ray* rays, int n, Hit* hits) const;
     /// The nearest hit of one ray, whatever its opacity.
     Hit first(const Ray& ray) const;
