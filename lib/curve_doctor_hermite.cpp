@@ -8,7 +8,6 @@ namespace {
 using doctor::append;
 using doctor::changes_of;
 using doctor::reversals_of;
-using doctor::short_text;
 
 /// Sides x(u,0), x(u,1), x(0,v), x(1,v): where HermiteData keeps each and its cross derivative.
 constexpr int kCurve[4] = {0, 3, 0, 3}, kCross[4] = {1, 2, 1, 2};

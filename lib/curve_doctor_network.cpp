@@ -8,7 +8,6 @@ namespace isoparm {
 namespace {
 
 using doctor::append;
-using doctor::short_text;
 
 /// Beyond so many crossings no repair is looked for, and after so many comparisons the search is given up.
 constexpr std::size_t kMostCrossings = 100000;

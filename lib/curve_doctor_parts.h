@@ -1,19 +1,14 @@
 // curve_doctor_parts.h -- what the files of curve_doctor share.
 #pragma once
-#include <cstdio>
 #include <numeric>
 
 #include "curve_doctor.h"
 #include "curves/modify.h"
 #include "patches/compatibility.h"
+#include "short_text.h"
 
 namespace isoparm::doctor {
 
-inline std::string short_text(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", x);
-    return text;
-}
 
 inline double tolerance_of(const Point& a, const Point& b, double size) { return compatibility_tolerance * size + rounding_of(a, b); }
 

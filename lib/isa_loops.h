@@ -5,12 +5,14 @@
 // get the loop by inlining (ISOPARM_INLINE), and the compiler's vectorizer makes of it what the instruction set can do. -ffp-contract=off
 // keeps all of them equal to the bit.
 #pragma once
+#include <cmath>
 
 #if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
 #define ISOPARM_ISA_LOOPS 1
 #define ISOPARM_FOR_AVX2 [[gnu::target("avx2")]]
 // Everything between one of ISOPARM_BEGIN_... and ISOPARM_END_ISA is for that instruction set: vectors that are written out need that, as the compiler
-// takes them apart before it inlines. Such loops stand in a file .inc, which is included once for each set, in a namespace of its own.
+// takes them apart before it inlines. Such loops stand in a file .inc; isa_copies.inc includes it once for each set.
 #ifdef __clang__
 #define ISOPARM_FOR_AVX512 [[gnu::target("avx512f,avx512dq,avx512vl")]]
 #define ISOPARM_BEGIN_AVX2 _Pragma("clang attribute push(__attribute__((target(\"avx2\"))), apply_to = function)")

@@ -14,7 +14,6 @@ namespace isoparm {
 namespace {
 
 using doctor::append;
-using doctor::short_text;
 
 constexpr double kAtAnEnd = 1e-10;   // of the domain: a crossing so near to an end is there
 constexpr double kAtTheSeam = 1e-7;  // of a closed curve's size, or as far as the curves miss each other there: a crossing so near to its seam is at the seam

@@ -10,6 +10,7 @@
 #include "html_text.h"
 #include "printable_text.h"
 #include "scratch_folder.h"
+#include "short_text.h"
 
 namespace isoparm {
 namespace {
@@ -69,11 +70,6 @@ for (const section of document.querySelectorAll('section[data-pair]')) {
 }
 )";
 
-std::string brief(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", x);
-    return text;
-}
 
 /// The file that write_image makes, as a data: address.
 std::string png_address(const Image& image) {
@@ -135,7 +131,7 @@ std::string histogram(const std::vector<PartDiff>& parts) {
                       std::ldexp(1, power + 1) > limit ? "#c05030" : "#4080a0", power, static_cast<unsigned long long>(count));
         text += bar;
     }
-    text += "<text x=\"30\" y=\"148\">" + brief(std::ldexp(1, first)) + "</text><text x=\"670\" y=\"148\" text-anchor=\"end\">" + brief(std::ldexp(1, last + 1)) + "</text><text x=\"30\" y=\"164\">difference, by powers of two; " + std::to_string(equal) + " samples are equal; red: above " + brief(limit) + "</text></svg>\n";
+    text += "<text x=\"30\" y=\"148\">" + short_text(std::ldexp(1, first)) + "</text><text x=\"670\" y=\"148\" text-anchor=\"end\">" + short_text(std::ldexp(1, last + 1)) + "</text><text x=\"30\" y=\"164\">difference, by powers of two; " + std::to_string(equal) + " samples are equal; red: above " + short_text(limit) + "</text></svg>\n";
     return text;
 }
 
@@ -144,9 +140,9 @@ std::string table(const ImageDiff& d) {
     for (const PartDiff& p : d.parts)
         for (const ChannelDiff& c : p.channels) {
             text += "<tr><td>" + escaped(printable(p.name.empty() || d.parts.size() < 2 ? c.name : p.name + "/" + c.name)) + "</td>";
-            for (const double x : {c.max, c.mean(), c.rms(), c.psnr(), c.percentile(0.99)}) text += "<td class=\"n\">" + brief(x) + "</td>";
+            for (const double x : {c.max, c.mean(), c.rms(), c.psnr(), c.percentile(0.99)}) text += "<td class=\"n\">" + short_text(x) + "</td>";
             text += "<td class=\"n\">" + std::to_string(c.failing) + "</td><td class=\"n\">" + std::to_string(c.nonfinite) + "</td><td>" +
-                    (c.differing > 0 ? brief(c.worst.a) + " became " + brief(c.worst.b) + " at (" + std::to_string(c.worst.x) + "," + std::to_string(c.worst.y) + ")" : "") + "</td></tr>\n";
+                    (c.differing > 0 ? short_text(c.worst.a) + " became " + short_text(c.worst.b) + " at (" + std::to_string(c.worst.x) + "," + std::to_string(c.worst.y) + ")" : "") + "</td></tr>\n";
         }
     text += "</tbody></table></div>\n";
     bool first = true;
@@ -154,8 +150,8 @@ std::string table(const ImageDiff& d) {
         for (const PatchFailures& f : p.patches) {
             if (first) text += "<div class=\"scroll\"><table><thead><tr><th>channel</th><th class=\"n\">patch</th><th class=\"n\">pixels</th><th class=\"n\">worst</th><th>at</th><th>uv</th></tr></thead><tbody>\n";
             first = false;
-            text += "<tr><td>" + escaped(printable(p.channels[f.channel].name)) + "</td><td class=\"n\">" + std::to_string(f.patch) + "</td><td class=\"n\">" + std::to_string(f.pixels) + "</td><td class=\"n\">" + brief(f.difference) + "</td><td>(" +
-                    std::to_string(f.worst.x) + "," + std::to_string(f.worst.y) + ")</td><td>(" + brief(f.u) + ", " + brief(f.v) + ")</td></tr>\n";
+            text += "<tr><td>" + escaped(printable(p.channels[f.channel].name)) + "</td><td class=\"n\">" + std::to_string(f.patch) + "</td><td class=\"n\">" + std::to_string(f.pixels) + "</td><td class=\"n\">" + short_text(f.difference) + "</td><td>(" +
+                    std::to_string(f.worst.x) + "," + std::to_string(f.worst.y) + ")</td><td>(" + short_text(f.u) + ", " + short_text(f.v) + ")</td></tr>\n";
         }
     return first ? text : text + "</tbody></table></div>\n";
 }
@@ -167,8 +163,8 @@ std::string stage(const DiffPreview& p, const ImageDiff& d) {
     text += "<input type=\"range\" min=\"0\" max=\"100\" value=\"50\" aria-label=\"Where the wipe is\" hidden></div>\n<div class=\"stage\">\n";
     const std::string scale = p.factor > 1 ? ", " + std::to_string(p.factor) + " x " + std::to_string(p.factor) + " pixels in one" : "";
     text += figure("a", "reference" + scale, p.a, false) + figure("b", "new" + scale, p.b, false);
-    text += figure("heat", "largest difference of a pixel, from " + brief(d.max / 1000) + " (dark) to " + brief(d.max) + " (light), logarithmic; black: equal; red: NaN or Inf", heat(p.a, p.difference, d.max, true), true);
-    if (!p.flip.empty()) text += figure("flip", "FLIP, from 0 (dark) to 1 (light); mean " + brief(d.flip.value_or(0)), heat(p.a, p.flip, 1, false), true);
+    text += figure("heat", "largest difference of a pixel, from " + short_text(d.max / 1000) + " (dark) to " + short_text(d.max) + " (light), logarithmic; black: equal; red: NaN or Inf", heat(p.a, p.difference, d.max, true), true);
+    if (!p.flip.empty()) text += figure("flip", "FLIP, from 0 (dark) to 1 (light); mean " + short_text(d.flip.value_or(0)), heat(p.a, p.flip, 1, false), true);
     return text + "</div>\n";
 }
 
@@ -192,7 +188,7 @@ std::string diff_page(const std::vector<ImageDiff>& all, const DiffLimits& limit
         text += "<section data-pair=\"" + std::to_string(k + 1) + "\">\n<h2>" + escaped(printable(d.b)) + " <span class=\"soft\">against " + escaped(printable(d.a)) + "</span></h2>\n<p class=\"" + verdict_name(d.verdict) + "\">" + escaped(verdict_line(d, limits)) + "</p>\n";
         text += d.figures;
         if (d.compared()) {
-            text += "<p>max " + brief(d.max) + ", mean " + brief(d.mean) + ", RMS " + brief(d.rms) + ", PSNR " + brief(d.psnr) + (d.flip ? ", FLIP " + brief(*d.flip) : "") + (d.ssim ? ", SSIM " + brief(*d.ssim) : "") + "</p>\n" + histogram(d.parts) + table(d);
+            text += "<p>max " + short_text(d.max) + ", mean " + short_text(d.mean) + ", RMS " + short_text(d.rms) + ", PSNR " + short_text(d.psnr) + (d.flip ? ", FLIP " + short_text(*d.flip) : "") + (d.ssim ? ", SSIM " + short_text(*d.ssim) : "") + "</p>\n" + histogram(d.parts) + table(d);
         }
         text += "</section>\n";
     }

@@ -8,15 +8,11 @@
 #include "html_text.h"
 #include "json_text.h"
 #include "printable_text.h"
+#include "short_text.h"
 
 namespace isoparm {
 namespace {
 
-std::string brief(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", x);
-    return std::isnan(x) ? "nan" : text;
-}
 std::string at(const DiffSample& s) {
     char text[32];
     std::snprintf(text, sizeof text, "(%d,%d)", s.x, s.y);
@@ -26,12 +22,12 @@ std::string padded(std::string text, std::size_t width) {
     if (text.size() < width) text.resize(width, ' ');
     return text + " ";
 }
-std::string percent(std::uint64_t part, std::uint64_t whole) { return brief(whole ? 100 * static_cast<double>(part) / static_cast<double>(whole) : 0) + " %"; }
+std::string percent(std::uint64_t part, std::uint64_t whole) { return short_text(whole ? 100 * static_cast<double>(part) / static_cast<double>(whole) : 0) + " %"; }
 
 /// "N.Y: 12 px > 0.004, worst 0.031 at (412,88), patch 3, uv (0.51,0.02)"
 std::string patch_line(const PartDiff& p, const PatchFailures& f) {
     const ChannelDiff& c = p.channels[f.channel];
-    return printable(c.name) + ": " + std::to_string(f.pixels) + " px > " + brief(c.fail) + ", worst " + brief(f.difference) + " at " + at(f.worst) + (f.patch >= 0 ? ", patch " + std::to_string(f.patch) : ", no patch") + ", uv (" + brief(f.u) + "," + brief(f.v) + ")";
+    return printable(c.name) + ": " + std::to_string(f.pixels) + " px > " + short_text(c.fail) + ", worst " + short_text(f.difference) + " at " + at(f.worst) + (f.patch >= 0 ? ", patch " + std::to_string(f.patch) : ", no patch") + ", uv (" + short_text(f.u) + "," + short_text(f.v) + ")";
 }
 
 void print_part(std::ostream& out, const PartDiff& p, bool named) {
@@ -46,8 +42,8 @@ void print_part(std::ostream& out, const PartDiff& p, bool named) {
             ++equal;
             continue;
         }
-        out << "  " << padded(printable(c.name), longest) << padded(brief(c.max), 10) << padded(brief(c.mean()), 10) << padded(brief(c.rms()), 10) << padded(brief(c.psnr()), 8) << padded(brief(c.percentile(0.99)), 10)
-            << padded(std::to_string(c.failing) + " > " + brief(c.fail), 20) << brief(c.worst.a) << " became " << brief(c.worst.b) << " at " << at(c.worst);
+        out << "  " << padded(printable(c.name), longest) << padded(short_text(c.max), 10) << padded(short_text(c.mean()), 10) << padded(short_text(c.rms()), 10) << padded(short_text(c.psnr()), 8) << padded(short_text(c.percentile(0.99)), 10)
+            << padded(std::to_string(c.failing) + " > " + short_text(c.fail), 20) << short_text(c.worst.a) << " became " << short_text(c.worst.b) << " at " << at(c.worst);
         if (c.nonfinite > 0) out << "; " << c.nonfinite << " px with NaN or Inf";
         out << "\n";
     }
@@ -111,10 +107,10 @@ std::string verdict_line(const ImageDiff& d, const DiffLimits& limits) {
     if (d.verdict == DiffVerdict::unreadable) return "ERROR: " + why;
     if (d.verdict == DiffVerdict::missing) return "FAIL: " + why;
     if (d.nonfinite > 0) why = std::to_string(d.nonfinite) + " of " + std::to_string(d.pixels) + " pixels hold NaN or Inf" + (why.empty() ? "" : "; " + why);
-    if (d.failing > d.nonfinite) why += (why.empty() ? "" : "; ") + std::to_string(d.failing) + " of " + std::to_string(d.pixels) + " pixels (" + percent(d.failing, d.pixels) + ") differ by more than " + (limits.channels.empty() ? brief(limits.fail.value) : "their channels' limits");
-    if (d.verdict == DiffVerdict::fail && why.empty()) why = "the largest difference, " + brief(d.max) + ", is more than " + brief(limits.fail.hard);
+    if (d.failing > d.nonfinite) why += (why.empty() ? "" : "; ") + std::to_string(d.failing) + " of " + std::to_string(d.pixels) + " pixels (" + percent(d.failing, d.pixels) + ") differ by more than " + (limits.channels.empty() ? short_text(limits.fail.value) : "their channels' limits");
+    if (d.verdict == DiffVerdict::fail && why.empty()) why = "the largest difference, " + short_text(d.max) + ", is more than " + short_text(limits.fail.hard);
     if (d.verdict == DiffVerdict::warn && why.empty())
-        why = d.warning > 0 ? std::to_string(d.warning) + " of " + std::to_string(d.pixels) + " pixels (" + percent(d.warning, d.pixels) + ") differ by more than " + brief(limits.warn.value) : "the largest difference is " + brief(d.max);
+        why = d.warning > 0 ? std::to_string(d.warning) + " of " + std::to_string(d.pixels) + " pixels (" + percent(d.warning, d.pixels) + ") differ by more than " + short_text(limits.warn.value) : "the largest difference is " + short_text(d.max);
     const std::string what = d.verdict == DiffVerdict::pass ? "PASS" : d.verdict == DiffVerdict::warn ? "WARNING" : "FAIL";
     return what + (why.empty() ? "" : ": " + why);
 }
@@ -123,9 +119,9 @@ void print_diff_text(std::ostream& out, const ImageDiff& d, const DiffLimits& li
     out << printable(d.a) << " and " << printable(d.b) << "\n";
     for (const PartDiff& p : d.parts) print_part(out, p, d.parts.size() > 1);
     if (d.compared()) {
-        out << "  all: max " << brief(d.max) << ", mean " << brief(d.mean) << ", rms " << brief(d.rms) << ", psnr " << brief(d.psnr);
-        if (d.flip) out << ", flip " << brief(*d.flip);
-        if (d.ssim) out << ", ssim " << brief(*d.ssim);
+        out << "  all: max " << short_text(d.max) << ", mean " << short_text(d.mean) << ", rms " << short_text(d.rms) << ", psnr " << short_text(d.psnr);
+        if (d.flip) out << ", flip " << short_text(*d.flip);
+        if (d.ssim) out << ", ssim " << short_text(*d.ssim);
         out << "\n";
     }
     out << verdict_line(d, limits) << "\n";

@@ -12,29 +12,8 @@ constexpr double kRegular = 0.9;     // of |I - Y J|, which must be below 1: far
 constexpr double kEdgeOn = 1e-9;     // det / (|a| |b|) below which rounding would count
 constexpr double kRounding = 1e-14;  // relative: far above that of a few operations in double
 
-namespace baseline {
-#define ISOPARM_LANES 2
-#include "exact_loops.inc"
-#undef ISOPARM_LANES
-}  // namespace baseline
-
-#ifdef ISOPARM_ISA_LOOPS
-ISOPARM_BEGIN_AVX2
-namespace avx2 {
-#define ISOPARM_LANES 4
-#include "exact_loops.inc"
-#undef ISOPARM_LANES
-}  // namespace avx2
-ISOPARM_END_ISA
-
-ISOPARM_BEGIN_AVX512
-namespace avx512 {
-#define ISOPARM_LANES 8
-#include "exact_loops.inc"
-#undef ISOPARM_LANES
-}  // namespace avx512
-ISOPARM_END_ISA
-#endif
+#define ISOPARM_LOOPS "exact_loops.inc"
+#include "isa_copies.inc"
 
 }  // namespace
 

@@ -1,10 +1,11 @@
 #include "study_page.h"
 
-#include <cstdio>
+#include <cmath>
 #include <cstdlib>
 
 #include "html_text.h"
 #include "peer.h"
+#include "short_text.h"
 #include "study_plots.h"
 
 namespace isoparm {
@@ -33,14 +34,7 @@ code { font-size: .92em; overflow-wrap: anywhere; }
 std::string brief(const std::string& number) {
     if (number.find_first_of(".e") == std::string::npos) return number;
     const double x = std::strtod(number.c_str(), nullptr);
-    char text[32];
-    std::snprintf(text, sizeof text, x >= 1000 && x < 1e15 ? "%.0f" : "%.4g", x);
-    return text;
-}
-std::string brief(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return text;
+    return x >= 1000 && x < 1e15 ? short_text(std::round(x), 15) : short_text(x);
 }
 
 /// Without the declaration, and with names of its own: several stand on one page.
@@ -94,7 +88,7 @@ std::string orders(const StudyFacts& facts, const std::vector<StudyRow>& rows) {
         const MethodOrders o = fitted_orders(rows, m);
         const StudyMethod* method = find_any_study_method(m);
         text += "<tr><td>" + escaped(m) + "</td><td>" + (method ? escaped(method->summary) : "") + "</td><td class=\"number\">" +
-                (o.certified ? brief(o.certified->order) : "") + "</td><td class=\"number\">" + (o.sampled ? brief(o.sampled->order) : "") +
+                (o.certified ? short_text(o.certified->order, 3) : "") + "</td><td class=\"number\">" + (o.sampled ? short_text(o.sampled->order, 3) : "") +
                 "</td><td class=\"number\">" + (o.certified ? std::to_string(o.certified->points) : "") + "</td></tr>\n";
     }
     return text + "</tbody></table></div>\n";
@@ -131,7 +125,7 @@ std::string study_page(const StudyFacts& facts, const std::vector<StudyRow>& row
             "<figure>" + inlined(svg[i], i, plots[i].plot.title) + "<figcaption>" + escaped(plots[i].caption) + "</figcaption></figure>\n";
     text += "</div>\n";
     if (!png.empty()) {
-        text += "<h2>Where the error is</h2>\n<p>Error of each triangle at the tolerance " + brief(facts.heat_tolerance) +
+        text += "<h2>Where the error is</h2>\n<p>Error of each triangle at the tolerance " + short_text(facts.heat_tolerance, 3) +
                 " scene units, as a part of that tolerance, on a logarithmic scale; a hundredth and less is darkest. Where the certified "
                 "error is far above the sampled one, "
                 "either the triangle is too coarse for the distance along the normal, so that the distance at equal parameters counts, or "

@@ -1,19 +1,14 @@
 #include "twist_arrows.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "palette.h"
 #include "promises.h"
+#include "short_text.h"
 
 namespace isoparm {
 namespace {
 
-std::string brief(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return text;
-}
 std::vector<TwistPair> apart(const Surface& surface) {
     std::vector<TwistPair> r = surface.examine ? surface.examine().twists : std::vector<TwistPair>();
     std::erase_if(r, [](const TwistPair& t) { return t.gap <= t.tolerance; });
@@ -35,7 +30,7 @@ std::vector<TwistArrow> twist_arrows(const Surface& surface, const TwistArrows& 
     const auto pairs = apart(surface);
     const double scale = scale_of(pairs, how, size);
     std::vector<TwistArrow> arrows;
-    for (const TwistPair& t : pairs) arrows.push_back({t.at, t.at + scale * t.of_f, t.at + scale * t.of_g, "gap " + brief(t.gap)});
+    for (const TwistPair& t : pairs) arrows.push_back({t.at, t.at + scale * t.of_f, t.at + scale * t.of_g, "gap " + short_text(t.gap, 3)});
     return arrows;
 }
 
@@ -48,7 +43,7 @@ void add_twist_legend(const Surface& surface, const TwistArrows& how, double siz
     if (pairs.empty()) return add("all twists fit together", ink_color());
     add("$x_{uv}$, across $u = $const", twist_color(0));
     add("$x_{vu}$, across $v = $const", twist_color(1));
-    add("drawn " + brief(scale_of(pairs, how, size)) + " times" + (pairs.front().remedy.empty() ? "" : "; remedy: " + pairs.front().remedy), ink_color());
+    add("drawn " + short_text(scale_of(pairs, how, size), 3) + " times" + (pairs.front().remedy.empty() ? "" : "; remedy: " + pairs.front().remedy), ink_color());
 }
 
 }  // namespace isoparm

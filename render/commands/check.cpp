@@ -4,11 +4,11 @@
 
 #include <tbb/parallel_for.h>
 
-#include "bound_text.h"
 #include "commands/selection.h"
 #include "continuity.h"
 #include "json_text.h"
 #include "promises.h"
+#include "short_text.h"
 
 namespace isoparm {
 namespace {

@@ -1,5 +1,5 @@
-#include <cstdio>
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
 
@@ -10,17 +10,13 @@
 #include "commands/render_options.h"
 #include "paper.h"
 #include "progress.h"
+#include "short_text.h"
 #include "suggest.h"
 
 namespace isoparm {
 
 namespace {
 
-std::string brief(double x) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return text;
-}
 
 constexpr const char* kHelp = R"(usage: isoparm render SCENE -o IMAGE [--size WxH] [--samples N] [--tolerance T] [--crop x0,y0,x1,y1] ...
 
@@ -71,7 +67,7 @@ int render_one(const Scene& scene, const std::string& output, RenderOptions how,
     const Picture picture = [&] {
         ProgressBar bar("rendering", quiet);
         how.progress = std::ref(bar);
-        if (bar.enabled()) how.tell_noise = [&](double noise) { bar.note("noise " + brief(noise)); };
+        if (bar.enabled()) how.tell_noise = [&](double noise) { bar.note("noise " + short_text(noise, 3)); };
         return render(scene, how);
     }();
     write_picture(options, output, scene, how, picture);
@@ -79,8 +75,8 @@ int render_one(const Scene& scene, const std::string& output, RenderOptions how,
     const SampleCount& n = picture.samples;
     if (!picture.whole) return kUnfinished;
     if (!(n.missed > 0)) return kSuccess;
-    std::fprintf(stderr, "isoparm: %s: %s %% of the picture did not come to a noise of %s within %d samples a pixel; --samples allows for more\n", output.c_str(), brief(100 * n.missed).c_str(),
-                 brief(n.target).c_str(), n.most_asked);
+    std::fprintf(stderr, "isoparm: %s: %s %% of the picture did not come to a noise of %s within %d samples a pixel; --samples allows for more\n", output.c_str(), short_text(100 * n.missed, 3).c_str(),
+                 short_text(n.target, 3).c_str(), n.most_asked);
     return kWarning;
 }
 

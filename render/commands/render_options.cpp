@@ -9,6 +9,7 @@
 #include "error.h"
 #include "isoparm_version.h"
 #include "paper.h"
+#include "short_text.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -30,11 +31,6 @@ std::vector<int> whole_numbers(const std::string& text, char separator, std::siz
     return r.size() == count ? r : std::vector<int>{};
 }
 
-std::string short_text(double x) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.4g", x);
-    return text;
-}
 
 /// "84mm" in points of 1/72 inch; 0 when it is no such length.
 double length_in_points(const std::string& text) {

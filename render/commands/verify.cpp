@@ -7,7 +7,6 @@
 #include <iostream>
 #include <sstream>
 
-#include "bound_text.h"
 #include "commands/selection.h"
 #include "commands/verify_certificate.h"
 #include "error.h"
@@ -16,6 +15,7 @@
 #include "json_text.h"
 #include "mesh_defects.h"
 #include "progress.h"
+#include "short_text.h"
 
 namespace isoparm {
 namespace {
@@ -142,15 +142,8 @@ void print_json(std::ostream& out, const Report& r) {
 // ---- text
 
 std::string brief(double x, bool up) { return bound_text(x, 6, up); }
-std::string brief(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return text;
-}
 std::string brief(const Point& p) {
-    char text[96];
-    std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", p.x, p.y, p.z);
-    return text;
+    return std::string("(").append(short_text(p.x, 6)) + ", " + short_text(p.y, 6) + ", " + short_text(p.z, 6) + ")";
 }
 std::string brief(const DirectedDistance& d) { return brief(d.lower, false) + " .. " + brief(d.upper, true) + "  at " + brief(d.at) + ", "; }
 
@@ -162,17 +155,17 @@ void print_text(std::ostream& out, const Report& r) {
     if (r.file.polygons) out << "; " << r.file.polygons << " polygons were cut into triangles";
     if (r.welded) out << "; " << r.welded << " vertices with equal coordinates became one with others";
     out << "\nagainst " << r.scene << ": " << r.selection.patches.size() << (r.selection.patches.size() == 1 ? " patch" : " patches") << "\n\nDistance, proved     " << brief(v.lower(), false) << " .. " << brief(v.upper(), true)
-        << "\n  surface to mesh    " << brief(s) << r.selection.patches[s.member].name << " at (" << brief(s.uv.x) << ", " << brief(s.uv.y) << ")\n  mesh to surface    " << brief(m) << "triangle " << m.triangle
-        << "\n\nNormals, sampled     at most " << brief(v.normals.most) << " degrees (triangle " << v.normals.worst << "), mean " << brief(v.normals.mean) << "; " << v.normals.against << " of " << v.normals.compared
+        << "\n  surface to mesh    " << brief(s) << r.selection.patches[s.member].name << " at (" << short_text(s.uv.x, 3) << ", " << short_text(s.uv.y, 3) << ")\n  mesh to surface    " << brief(m) << "triangle " << m.triangle
+        << "\n\nNormals, sampled     at most " << short_text(v.normals.most, 3) << " degrees (triangle " << v.normals.worst << "), mean " << short_text(v.normals.mean, 3) << "; " << v.normals.against << " of " << v.normals.compared
         << " triangles show the other side\n\nBoundary             " << d.boundary_loops << " loops of " << d.open_edges.size() << " edges; " << r.holes << " are holes, not the surfaces' border\nT-junctions          "
-        << d.t_junctions.size() << " (within " << brief(r.junction_distance) << ")";
+        << d.t_junctions.size() << " (within " << short_text(r.junction_distance, 3) << ")";
     for (std::size_t k = 0; k < d.t_junctions.size() && k < 3; ++k)
         out << (k ? ", " : ": ") << "vertex " << d.t_junctions[k].vertex << " in edge " << d.t_junctions[k].edge[0] << "-" << d.t_junctions[k].edge[1];
     out << "\nNot manifold         " << d.non_manifold_edges << " edges, " << d.non_manifold_vertices << " vertices; " << d.inconsistent_edges << " edges between triangles of opposite orientation; " << d.components
         << (d.components == 1 ? " piece" : " pieces") << "\nTriangles            " << d.degenerate_triangles << " degenerate, " << d.duplicate_triangles << " duplicate\nVertices             " << d.unused_vertices
-        << " unused, " << d.equal_vertices << " with the coordinates of another" << (d.equal_vertices ? " (--weld makes them one)" : "") << "\nLeast angles         " << brief(r.shapes.least_angle) << " degrees (triangle " << r.shapes.thinnest
-        << "); 1 % below " << brief(r.shapes.angle_1) << ", half below " << brief(r.shapes.angle_50) << "\nAspect ratios        " << brief(r.shapes.most_aspect) << "; 1 % above " << brief(r.shapes.aspect_99) << ", half above "
-        << brief(r.shapes.aspect_50) << "\n";
+        << " unused, " << d.equal_vertices << " with the coordinates of another" << (d.equal_vertices ? " (--weld makes them one)" : "") << "\nLeast angles         " << short_text(r.shapes.least_angle, 3) << " degrees (triangle " << r.shapes.thinnest
+        << "); 1 % below " << short_text(r.shapes.angle_1, 3) << ", half below " << short_text(r.shapes.angle_50, 3) << "\nAspect ratios        " << short_text(r.shapes.most_aspect, 3) << "; 1 % above " << short_text(r.shapes.aspect_99, 3) << ", half above "
+        << short_text(r.shapes.aspect_50, 3) << "\n";
     if (!r.limits.empty()) out << "\n";
     for (const Limit& l : r.limits)
         out << "Limit " << l.what << (l.limit > 0 ? " " + to_text(l.limit) : "") << ": " << (!l.holds ? "NOT DECIDED, " : *l.holds ? "holds" : "EXCEEDED, ") << (l.holds && *l.holds ? "" : l.text) << "\n";
