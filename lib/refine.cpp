@@ -64,8 +64,8 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
             const Point& x = positions_[mesh.vertex[i]];
             const auto on = [](double t, const std::vector<double>& breaks) { return std::binary_search(breaks.begin(), breaks.end(), t); };
             const auto c = std::uint32_t(i);
-            const PolynomialCell* cell = on(p.x, mesh.breaks_u) || on(p.y, mesh.breaks_v) ? nullptr : &mesh.root_of({c, c, c})->polynomial();
-            const double quick = cell && cell->exists() ? cell->slack(p, x) : tolerance_;
+            const bool on_line = on(p.x, mesh.breaks_u) || on(p.y, mesh.breaks_v);
+            const double quick = on_line ? tolerance_ : mesh.root_of({c, c, c})->quick_slack(p, x);
             mesh.slack[i] = quick <= kFew * tolerance_ ? quick : slack_of(surface_[member].patch, p, x);
         }
     });
@@ -78,26 +78,37 @@ CornerData Refinement::corners_of(const PatchMesh& mesh, const PatchTriangle& t)
     return data;
 }
 
-void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide) const {
+void Refinement::bound(const PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide) const {
     const CornerData data = corners_of(mesh, t);
     t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_, turn_, decide);
 }
 
-/// Those of one polynomial cell after the other go together.
+/// Those of one sharp cell after the other go together.
 void Refinement::bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const {
-    std::array<CornerData, kTogether> data;
-    std::array<TriangleBound, kTogether> bounds;
-    const auto triangle = [&](std::size_t i) -> PatchTriangle& { return mesh.triangles[mesh.fresh[i]]; };
-    while (first < last) {
-        const BoundCell* cell = triangle(first).cell;
-        if (!cell->polynomial().exists()) {
-            bound(mesh, member, triangle(first++));
-            continue;
-        }
-        std::size_t n = 0;
-        while (first + n < last && triangle(first + n).cell == cell) data[n] = corners_of(mesh, triangle(first + n)), ++n;
-        cell->bound_all(surface_[member].patch, {data.data(), n}, tolerance_, measure_, turn_, false, bounds.data());
-        for (std::size_t i = 0; i < n; ++i) triangle(first++).proof = bounds[i];
+    std::vector<PatchTriangle*> all;
+    for (std::size_t i = first; i < last; ++i) all.push_back(&mesh.triangles[mesh.fresh[i]]);
+    bound_together(mesh, member, all, false);
+}
+
+void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std::vector<PatchTriangle*>& triangles, bool quick) const {
+    const Patch& patch = surface_[member].patch;
+    for (PatchTriangle*& t : triangles) {
+        const BoundCell* cell = t->cell->sharp_cell(patch, box_of({mesh.uv[t->corner[0]], mesh.uv[t->corner[1]], mesh.uv[t->corner[2]]}));
+        if (cell) t->cell = cell;
+        else bound(mesh, member, *t, quick), t = nullptr;
+    }
+    std::vector<CornerData> data;
+    std::vector<TriangleBound> bounds;
+    std::vector<PatchTriangle*> here;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        if (!triangles[i]) continue;
+        const BoundCell* cell = triangles[i]->cell;
+        data.clear(), here.clear();
+        for (std::size_t k = i; k < triangles.size(); ++k)
+            if (triangles[k] && triangles[k]->cell == cell) data.push_back(corners_of(mesh, *triangles[k])), here.push_back(triangles[k]), triangles[k] = nullptr;
+        bounds.resize(data.size());
+        cell->bound_all(patch, data, tolerance_, measure_, turn_, quick, bounds.data());
+        for (std::size_t k = 0; k < here.size(); ++k) here[k]->proof = bounds[k];
     }
 }
 

@@ -144,13 +144,15 @@ private:
     void measure_slack(std::uint32_t member, std::size_t first);
     void collect_slack(const std::vector<std::size_t>& first);
     CornerData corners_of(const PatchMesh& mesh, const PatchTriangle& t) const;
-    void bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
+    void bound(const PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
+    /// Eight at once where polynomials serve; `quick`: less sharply. Uses the list up.
+    void bound_together(const PatchMesh& mesh, std::uint32_t member, std::vector<PatchTriangle*>& triangles, bool quick) const;
     void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
     bool may_lose(const PatchMesh& mesh) const;
     bool keeps(const PatchMesh& mesh, const PatchTriangle& t) const;
     struct Flip;
     Flip flip_of(const PatchMesh& mesh, std::uint32_t triangle, int edge) const;
-    bool in_vain(const PatchMesh& mesh, const Flip& f) const;
+    bool in_vain(const PatchMesh& mesh, std::uint32_t member, const Flip& f) const;
     bool flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) const;
     bool flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, bool with_neighbours) const;
     void mark(PatchMesh& mesh, std::uint32_t edge);

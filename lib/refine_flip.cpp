@@ -16,6 +16,8 @@ void claim(PatchMesh& mesh, std::uint32_t i, std::uint32_t j, std::uint32_t diag
     }
 }
 
+Box hull(const Box& a, const Box& b) { return {isoparm::hull(a.u, b.u), isoparm::hull(a.v, b.v)}; }
+
 }  // namespace
 
 /// Cells are u-major.
@@ -31,6 +33,7 @@ const BoundCell* PatchMesh::root_of(const std::array<std::uint32_t, 3>& corner) 
 struct Refinement::Flip {
     std::uint32_t i = kNone, j = kNone, diagonal = kNone, from = 0, to = 0;  // kNone: it cannot be turned
     PatchTriangle left, right;
+    bool together = false;  // one polynomial serves both
 };
 
 /// Edge k of a triangle, turned into the other diagonal of the quadrilateral around it.
@@ -86,32 +89,36 @@ bool Refinement::flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) cons
 }
 
 /// Is the surface farther than the tolerance from the middle of the new diagonal? Nothing is proved by that.
-bool Refinement::in_vain(const PatchMesh& mesh, const Flip& f) const {
+bool Refinement::in_vain(const PatchMesh& mesh, std::uint32_t member, const Flip& f) const {
     const Vec2 &p = mesh.uv[f.from], &q = mesh.uv[f.to];
-    const Point x = f.left.cell->polynomial().point({0.5 * p.x + 0.5 * q.x, 0.5 * p.y + 0.5 * q.y});
-    const Point d = x - 0.5 * (positions_[mesh.vertex[f.from]] + positions_[mesh.vertex[f.to]]);
+    const Vec2 middle{0.5 * p.x + 0.5 * q.x, 0.5 * p.y + 0.5 * q.y};
+    const PolynomialCell& near = f.left.cell->polynomial();
+    const Point d = (near.exact() ? near.point(middle) : surface_[member].patch.point(middle.x, middle.y)) - 0.5 * (positions_[mesh.vertex[f.from]] + positions_[mesh.vertex[f.to]]);
     return (measure_ == Measure::parametric ? length(d) : std::fabs(dot(d, mesh.triangles[f.i].proof.unit))) > tolerance_;
 }
 
-/// The worst edge first. In polynomial cells all that can be turned are bounded together.
+/// The worst edge first. Where polynomials serve, all that can be turned are bounded together.
 bool Refinement::flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t i, bool with_neighbours) const {
     const int worst = mesh.triangles[i].proof.worst_edge;
     std::array<Flip, 3> flips;
-    std::array<CornerData, 6> data;
-    std::array<TriangleBound, 6> bounds;
+    std::vector<PatchTriangle*> together;
     std::size_t n = 0;
-    for (int k = 0; k < 3; ++k)
-        if (Flip f = flip_of(mesh, i, (worst + k) % 3); f.i != kNone && !(f.left.cell->polynomial().exists() && in_vain(mesh, f))) flips[n++] = f;
-    if (n == 0) return false;
-    const BoundCell* cell = flips[0].left.cell;
-    const bool together = cell->polynomial().exists();
-    for (std::size_t k = 0; k < n && together; ++k) data[2 * k] = corners_of(mesh, flips[k].left), data[2 * k + 1] = corners_of(mesh, flips[k].right);
-    if (together) cell->bound_all(surface_[member].patch, {data.data(), 2 * n}, tolerance_, measure_, turn_, true, bounds.data());
+    for (int k = 0; k < 3; ++k) {
+        Flip f = flip_of(mesh, i, (worst + k) % 3);
+        if (f.i == kNone) continue;
+        const auto [a, b, c, d] = std::array{mesh.uv[f.from], mesh.uv[f.to], mesh.uv[f.left.corner[0]], mesh.uv[f.right.corner[1]]};
+        const Box all = hull(box_of({a, b, c}), box_of({a, b, d}));
+        const BoundCell* cell = f.left.cell->sharp_cell(surface_[member].patch, all);
+        if (cell) f.left.cell = f.right.cell = cell, f.together = true;
+        if (cell && in_vain(mesh, member, f)) continue;
+        flips[n++] = f;
+    }
+    for (std::size_t k = 0; k < n; ++k)
+        if (flips[k].together) together.push_back(&flips[k].left), together.push_back(&flips[k].right);
+    bound_together(mesh, member, together, true);
     for (std::size_t k = 0; k < n; ++k) {
         Flip& f = flips[k];
-        if (together) {
-            f.left.proof = bounds[2 * k], f.right.proof = bounds[2 * k + 1];
-        } else {
+        if (!f.together) {
             bound(mesh, member, f.left, true);
             if (!keeps(mesh, f.left)) continue;
             bound(mesh, member, f.right, true);
