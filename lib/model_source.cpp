@@ -11,6 +11,8 @@ namespace {
 
 using Homogeneous = std::array<Interval, 4>;
 constexpr int kDegree = PolynomialCell::max_degree;
+/// Of numerators and denominators: more take long.
+constexpr int kMostDegree = 9;
 
 /// At least the absolute values of a polynomial and its derivatives over |x| <= hu, |y| <= hv.
 struct Sizes {
@@ -62,7 +64,7 @@ ModelSource::ModelSource(const Patch& patch, const Box& cell) {
     const std::vector<Polynomial> form = patch.exact_cell(column, row);
     if (form.size() != 4) return;
     for (const Polynomial& f : form) p_ = std::max(p_, f.degree_u()), q_ = std::max(q_, f.degree_v());
-    if (p_ > kDegree || q_ > kDegree) return;
+    if (p_ > kMostDegree || q_ > kMostDegree) return;
     u_ = mid(cell.u), v_ = mid(cell.v);
     exact_.assign(std::size_t((p_ + 1) * (q_ + 1)), Homogeneous{});
     c_.assign(exact_.size(), Lanes{});
