@@ -40,6 +40,8 @@ public:
     /// A cell of the tree below this one that is not much wider than the triangle.
     const BoundCell* around(const Patch& patch, const Box& box) const;
 
+    /// Of a box in the cell, as sharp as can be; third derivatives are enclosed over parts x parts pieces.
+    SecondDerivatives model_of(const Patch& patch, const Box& box, int parts = 1) const;
     const SecondDerivatives& model() const { return model_; }
     /// The surface, or near it; need not exist.
     const PolynomialCell& polynomial() const { return *polynomial_; }
@@ -52,9 +54,6 @@ private:
     /// The child whose reach holds the box, made if it is not there yet; nullptr where none holds it.
     const BoundCell* child(const Patch& patch, const Box& of) const;
     void sharpen(const Patch& patch, std::span<const CornerData> triangles, std::span<const int> which, double tolerance, const LanesAsked& asked, TriangleBound* bounds) const;
-    /// Of a box in the cell.
-    SecondDerivatives model_of(const Patch& patch, const Box& box, int parts = 1) const;
-
     Box box_;    // children halve it
     Box reach_;  // a margin wider: triangles that lie in here are served
     std::shared_ptr<const PolynomialCell> polynomial_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace isoparm {
 namespace {
@@ -25,7 +26,7 @@ template <class Count, class F> void for_all(std::size_t members, Count count, F
 /// Triangles that are bounded in one go.
 constexpr std::size_t kTogether = 64;
 /// Slack below this part of the tolerance need not be sharp.
-constexpr double kFew = 1e-8;
+constexpr double kFew = 1e-6;
 
 }  // namespace
 
@@ -85,31 +86,34 @@ void Refinement::bound(const PatchMesh& mesh, std::uint32_t member, PatchTriangl
 
 /// Those of one sharp cell after the other go together.
 void Refinement::bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const {
-    std::vector<PatchTriangle*> all;
-    for (std::size_t i = first; i < last; ++i) all.push_back(&mesh.triangles[mesh.fresh[i]]);
-    bound_together(mesh, member, all, false);
+    std::array<PatchTriangle*, kTogether> all;
+    for (std::size_t i = first; i < last; ++i) all[i - first] = &mesh.triangles[mesh.fresh[i]];
+    bound_together(mesh, member, {all.data(), last - first}, false);
 }
 
-void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std::vector<PatchTriangle*>& triangles, bool quick) const {
+void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const {
     const Patch& patch = surface_[member].patch;
+    std::array<CornerData, kTogether> data;
+    std::array<TriangleBound, kTogether> bounds;
+    std::array<PatchTriangle*, kTogether> here;
     for (PatchTriangle*& t : triangles) {
-        const BoundCell* cell = t->cell->sharp_cell(patch, box_of({mesh.uv[t->corner[0]], mesh.uv[t->corner[1]], mesh.uv[t->corner[2]]}));
-        if (cell) t->cell = cell;
+        if (t->cell->polynomial().exact()) continue;
+        if (const BoundCell* cell = sharp_cell(mesh, member, *t)) t->cell = cell;
         else bound(mesh, member, *t, quick), t = nullptr;
     }
-    std::vector<CornerData> data;
-    std::vector<TriangleBound> bounds;
-    std::vector<PatchTriangle*> here;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         if (!triangles[i]) continue;
         const BoundCell* cell = triangles[i]->cell;
-        data.clear(), here.clear();
+        std::size_t n = 0;
         for (std::size_t k = i; k < triangles.size(); ++k)
-            if (triangles[k] && triangles[k]->cell == cell) data.push_back(corners_of(mesh, *triangles[k])), here.push_back(triangles[k]), triangles[k] = nullptr;
-        bounds.resize(data.size());
-        cell->bound_all(patch, data, tolerance_, measure_, turn_, quick, bounds.data());
-        for (std::size_t k = 0; k < here.size(); ++k) here[k]->proof = bounds[k];
+            if (triangles[k] && triangles[k]->cell == cell) here[n] = std::exchange(triangles[k], nullptr), data[n] = corners_of(mesh, *here[n]), ++n;
+        cell->bound_all(patch, {data.data(), n}, tolerance_, measure_, turn_, quick, bounds.data());
+        for (std::size_t k = 0; k < n; ++k) here[k]->proof = bounds[k];
     }
+}
+
+const BoundCell* Refinement::sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const {
+    return t.cell->sharp_cell(surface_[member].patch, box_of({mesh.uv[t.corner[0]], mesh.uv[t.corner[1]], mesh.uv[t.corner[2]]}));
 }
 
 bool Refinement::bound_and_mark() {

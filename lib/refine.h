@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "bound_cell.h"
@@ -145,8 +146,9 @@ private:
     void collect_slack(const std::vector<std::size_t>& first);
     CornerData corners_of(const PatchMesh& mesh, const PatchTriangle& t) const;
     void bound(const PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
-    /// Eight at once where polynomials serve; `quick`: less sharply. Uses the list up.
-    void bound_together(const PatchMesh& mesh, std::uint32_t member, std::vector<PatchTriangle*>& triangles, bool quick) const;
+    /// 64 at most: eight at once where polynomials serve; `quick`: less sharply. Uses the list up.
+    void bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const;
+    const BoundCell* sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const;
     void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
     bool may_lose(const PatchMesh& mesh) const;
     bool keeps(const PatchMesh& mesh, const PatchTriangle& t) const;

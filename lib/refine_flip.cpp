@@ -16,8 +16,6 @@ void claim(PatchMesh& mesh, std::uint32_t i, std::uint32_t j, std::uint32_t diag
     }
 }
 
-Box hull(const Box& a, const Box& b) { return {isoparm::hull(a.u, b.u), isoparm::hull(a.v, b.v)}; }
-
 }  // namespace
 
 /// Cells are u-major.
@@ -33,7 +31,7 @@ const BoundCell* PatchMesh::root_of(const std::array<std::uint32_t, 3>& corner) 
 struct Refinement::Flip {
     std::uint32_t i = kNone, j = kNone, diagonal = kNone, from = 0, to = 0;  // kNone: it cannot be turned
     PatchTriangle left, right;
-    bool together = false;  // one polynomial serves both
+    bool together = false;  // polynomials serve both
 };
 
 /// Edge k of a triangle, turned into the other diagonal of the quadrilateral around it.
@@ -101,21 +99,17 @@ bool Refinement::in_vain(const PatchMesh& mesh, std::uint32_t member, const Flip
 bool Refinement::flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t i, bool with_neighbours) const {
     const int worst = mesh.triangles[i].proof.worst_edge;
     std::array<Flip, 3> flips;
-    std::vector<PatchTriangle*> together;
-    std::size_t n = 0;
+    std::array<PatchTriangle*, 6> together;
+    std::size_t n = 0, count = 0;
     for (int k = 0; k < 3; ++k) {
         Flip f = flip_of(mesh, i, (worst + k) % 3);
         if (f.i == kNone) continue;
-        const auto [a, b, c, d] = std::array{mesh.uv[f.from], mesh.uv[f.to], mesh.uv[f.left.corner[0]], mesh.uv[f.right.corner[1]]};
-        const Box all = hull(box_of({a, b, c}), box_of({a, b, d}));
-        const BoundCell* cell = f.left.cell->sharp_cell(surface_[member].patch, all);
-        if (cell) f.left.cell = f.right.cell = cell, f.together = true;
-        if (cell && in_vain(mesh, member, f)) continue;
-        flips[n++] = f;
+        f.together = sharp_cell(mesh, member, f.left) && sharp_cell(mesh, member, f.right);
+        if (!(f.together && in_vain(mesh, member, f))) flips[n++] = f;
     }
     for (std::size_t k = 0; k < n; ++k)
-        if (flips[k].together) together.push_back(&flips[k].left), together.push_back(&flips[k].right);
-    bound_together(mesh, member, together, true);
+        if (flips[k].together) together[count++] = &flips[k].left, together[count++] = &flips[k].right;
+    bound_together(mesh, member, {together.data(), count}, true);
     for (std::size_t k = 0; k < n; ++k) {
         Flip& f = flips[k];
         if (!f.together) {
