@@ -24,10 +24,13 @@ Polynomial power(const Polynomial& x, int n) {
     return y;
 }
 
+/// Forms of higher degree than this take long and serve nobody (ModelSource).
+constexpr int kMostDegree = 9;
+
 /// H(r) g(a/r), r = a + b, as polynomials x, y, z over r^order, where H and g are polynomials: each term h r^i g (a/r)^j is one over r^(j-i).
 struct RationalCone {
     Vec3<Polynomial> sum;
-    int order = 0;
+    int order = 0, degree = 0;  // degree: of the sum
     bool exists = true;
 
     template <class G> RationalCone(const Function& H, const G& g, const Curve& edge, const Polynomial& a, const Polynomial& b) {
@@ -38,7 +41,11 @@ struct RationalCone {
         int lowest = 0;
         while (lowest < h.degree_u() && zero(h.coefficient(lowest, 0))) ++lowest;
         const Polynomial r = a + b;
-        order = std::max({x.x.degree_u(), x.y.degree_u(), x.z.degree_u(), lowest}) - lowest;
+        order = std::max({x.x.degree_u(), x.y.degree_u(), x.z.degree_u(), lowest}) - lowest, degree = order + h.degree_u();
+        if (degree > kMostDegree) {
+            exists = false;
+            return;
+        }
         for (int axis = 0; axis < 3; ++axis)
             for (int i = lowest; i <= h.degree_u(); ++i)
                 for (int j = 0; j <= x[axis].degree_u(); ++j) sum[axis] = sum[axis] + power(a, j) * power(r, order + i - j) * Polynomial(h.coefficient(i, 0) * x[axis].coefficient(j, 0));
@@ -78,8 +85,10 @@ struct SideVertex {
             return bulges ? RationalCone(H, Bulge{E[k], from, to}, E[k], a, b) : RationalCone(H, E[k], E[k], a, b);
         };
         const RationalCone cones[3] = {bent(0, B, C, w, v), bent(1, C, A, u, w), bent(2, A, B, v, u)};
-        const Polynomial powers[3] = {power(w + v, cones[0].order), power(u + w, cones[1].order), power(v + u, cones[2].order)};
         if (!cones[0].exists || !cones[1].exists || !cones[2].exists) return {};
+        const int orders = cones[0].order + cones[1].order + cones[2].order;
+        if (std::max({cones[0].degree - cones[0].order, cones[1].degree - cones[1].order, cones[2].degree - cones[2].order}) + orders > kMostDegree) return {};
+        const Polynomial powers[3] = {power(w + v, cones[0].order), power(u + w, cones[1].order), power(v + u, cones[2].order)};
         const Vec3<Polynomial> flat = bulges ? Vec3<Polynomial>(u * A + v * B + w * C) : Vec3<Polynomial>(H(u) * A + H(v) * B + H(w) * C);
         std::vector<Polynomial> x(4);
         x[3] = powers[0] * powers[1] * powers[2];
