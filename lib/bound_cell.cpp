@@ -16,7 +16,7 @@ constexpr double kLarge = 3, kLargePolynomial = 2;  // the second where cells co
 /// Pieces of the triangle's own box are tried where a bound is within this factor of the tolerance.
 constexpr double kNear = 2;
 /// Models as inaccurate as the first serve all triangles in their cells; those of a triangle's own box, as inaccurate as the second, are sharper than intervals.
-constexpr double kSharp = 0.004, kVague = 0.1;
+constexpr double kSharp = 0.02, kVague = 0.1;
 /// Cells are halved for models so often at most, and no further than to the triangle's size.
 constexpr int kDeepest = 40;
 

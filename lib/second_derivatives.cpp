@@ -13,6 +13,7 @@ double radius(const Vec3<Interval>& x) { return rounding::length_up(rad(x.x), ra
 double size_of(const Point& x) { return rounding::length_up(std::fabs(x.x), std::fabs(x.y), std::fabs(x.z)); }
 /// Second derivatives along the normal below this part of all of them count as that: a plane has none.
 constexpr double kVagueNormal = 0.02;
+constexpr double kBinomial[6][6] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}, {1, 4, 6, 4, 1}, {1, 5, 10, 10, 5, 1}};
 bool bounded(const Vec3<Interval>& x) { return x.x.bounded() && x.y.bounded() && x.z.bounded(); }
 
 /// Piece (i, j) of parts x parts.
@@ -146,7 +147,7 @@ template <class Radius> void PolynomialCell::bound_errors(Radius radius, double 
             for (int s = i; s <= p_; ++s, x *= hu) {
                 double y = 1;
                 for (int t = j; t <= q_; ++t, y *= hv) {
-                    const double weight = binomial(s, i) * binomial(t, j) * x * y;
+                    const double weight = kBinomial[s][i] * kBinomial[t][j] * x * y;
                     weights += weight;
                     const auto n = std::size_t(s * (q_ + 1) + t);
                     for (int axis = 0; axis < 3; ++axis) {
@@ -168,7 +169,6 @@ void step(Lanes& x, const Lanes& y, double d) {
     for (std::size_t lane = 0; lane < 4; ++lane) x[lane] += y[lane] * d;
 }
 
-constexpr double kBinomial[6][6] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}, {1, 4, 6, 4, 1}, {1, 5, 10, 10, 5, 1}};
 
 }  // namespace
 
