@@ -85,7 +85,7 @@ ModelSource::ModelSource(const Patch& patch, const Box& cell) {
 PolynomialCell ModelSource::over(const Patch&, const Box& box) const { return exact_.empty() ? PolynomialCell() : rational_over(box); }
 
 /// S = N / W. The model P is S's Taylor polynomial about the middle, up to rounding; S - P is R / W with R = N - P W, whose coefficients are
-/// enclosed: small ones, but for those of high order.
+/// bounded: small ones, but for those of high order.
 PolynomialCell ModelSource::rational_over(const Box& box) const {
     const double u = mid(box.u), v = mid(box.v), hu = rounding::up(std::max(box.u.hi - u, u - box.u.lo)), hv = rounding::up(std::max(box.v.hi - v, v - box.v.lo));
     if (!in_scale(hu) || !in_scale(hv)) return {};
@@ -99,28 +99,41 @@ PolynomialCell ModelSource::rational_over(const Box& box) const {
     const double least = (at(0, 0)[3].lo - safe(w.f - mag(at(0, 0)[3]))) * (1 - 1e-12) - 1e-12 * safe(w.f);
     if (!(least > 1e-3 * mag(at(0, 0)[3])) || !(least > 1e-60)) return {};
 
+    std::vector<Lanes> middle(a.size()), radius(a.size());
+    for (std::size_t n = 0; n < a.size(); ++n)
+        for (std::size_t k = 0; k < 4; ++k) middle[n][k] = mid(a[n][k]), radius[n][k] = rad(a[n][k]);
+    const auto index = [&](int i, int j) { return std::size_t(i * (q_ + 1) + j); };
     constexpr int stride = kDegree + 1;
     std::vector<PolynomialCell::Lanes> c(std::size_t(stride * stride), PolynomialCell::Lanes{});
-    const double scale = 1 / mid(at(0, 0)[3]);
+    const double scale = 1 / middle[0][3];
     for (int i = 0; i <= kDegree; ++i)
-        for (int j = 0; j <= kDegree; ++j)
-            for (std::size_t k = 0; k < 3; ++k) {
-                double sum = i <= p_ && j <= q_ ? mid(at(i, j)[k]) : 0;
-                for (int s = 0; s <= std::min(i, p_); ++s)
-                    for (int t = s == 0 ? 1 : 0; t <= std::min(j, q_); ++t) sum -= mid(at(s, t)[3]) * c[std::size_t((i - s) * stride + j - t)][k];
-                c[std::size_t(i * stride + j)][k] = sum * scale;
-            }
+        for (int j = 0; j <= kDegree; ++j) {
+            Lanes sum = i <= p_ && j <= q_ ? middle[index(i, j)] : Lanes{};
+            for (int s = 0; s <= std::min(i, p_); ++s)
+                for (int t = s == 0 ? 1 : 0; t <= std::min(j, q_); ++t)
+                    for (std::size_t k = 0; k < 3; ++k) sum[k] -= middle[index(s, t)][3] * c[std::size_t((i - s) * stride + j - t)][k];
+            for (std::size_t k = 0; k < 3; ++k) c[std::size_t(i * stride + j)][k] = sum[k] * scale;
+        }
 
+    // In plain arithmetic: each of at most 101 terms is rounded once, and so is each sum, none of which is above the sizes of all terms.
+    constexpr double relative = 256 * 0x1p-53;
     Sizes r[3];
-    for (std::size_t k = 0; k < 3; ++k)
-        for (int i = 0; i <= kDegree + p_; ++i)
-            for (int j = 0; j <= kDegree + q_; ++j) {
-                Interval rest = i <= p_ && j <= q_ ? at(i, j)[k] : Interval(0);
-                for (int s = std::max(0, i - kDegree); s <= std::min(i, p_); ++s)
-                    for (int t = std::max(0, j - kDegree); t <= std::min(j, q_); ++t)
-                        rest -= at(s, t)[3] * Interval(c[std::size_t((i - s) * stride + j - t)][k]);
-                r[k].add(i, j, mag(rest), x.data(), y.data());
-            }
+    for (int i = 0; i <= kDegree + p_; ++i)
+        for (int j = 0; j <= kDegree + q_; ++j) {
+            const bool there = i <= p_ && j <= q_;
+            Lanes rest = there ? middle[index(i, j)] : Lanes{}, off = there ? radius[index(i, j)] : Lanes{}, size{};
+            for (std::size_t k = 0; k < 3; ++k) size[k] = std::fabs(rest[k]);
+            for (int s = std::max(0, i - kDegree); s <= std::min(i, p_); ++s)
+                for (int t = std::max(0, j - kDegree); t <= std::min(j, q_); ++t) {
+                    const double w_middle = middle[index(s, t)][3], w_radius = radius[index(s, t)][3];
+                    const Lanes& factor = c[std::size_t((i - s) * stride + j - t)];
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        const double product = w_middle * factor[k];
+                        rest[k] -= product, size[k] += std::fabs(product), off[k] += w_radius * std::fabs(factor[k]);
+                    }
+                }
+            for (std::size_t k = 0; k < 3; ++k) r[k].add(i, j, std::fabs(rest[k]) + off[k] + relative * size[k], x.data(), y.data());
+        }
     const auto length_of = [&](double Sizes::*of) { return safe(rounding::length_up(r[0].*of, r[1].*of, r[2].*of)); };
     // Differentiate R = (S - P) W.
     const double each = safe(1 / least), d = safe(length_of(&Sizes::f) * each);
