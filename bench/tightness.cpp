@@ -49,10 +49,11 @@ double quantile(std::vector<double> x, double q) {
 
 Work bound_all(const Patch& patch, const std::vector<Piece>& pieces) {
     std::vector<double> parametric, normal;
+    const BoundCell cell(patch, {{patch.lines_u()[0], patch.lines_u()[1]}, {patch.lines_v()[0], patch.lines_v()[1]}});  // these patches have no breaks
     for (const Piece& p : pieces) {
         const auto [u0, u1] = std::minmax({p.data.uv[0].x, p.data.uv[1].x, p.data.uv[2].x});
         const auto [v0, v1] = std::minmax({p.data.uv[0].y, p.data.uv[1].y, p.data.uv[2].y});
-        const SecondDerivatives box(patch, {{u0, u1}, {v0, v1}});
+        const SecondDerivatives box = cell.model_of(patch, {{u0, u1}, {v0, v1}});
         const TriangleBound b = box.bounded ? bound_triangle(box, p.data, Measure::geometric) : bound_triangle(patch, p.data.uv, p.data.points);
         parametric.push_back(b.parametric / p.parametric);
         if (b.quiet && p.normal > 1e-9 * p.parametric) normal.push_back(b.normal / p.normal);

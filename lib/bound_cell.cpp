@@ -10,11 +10,15 @@ namespace {
 
 /// A triangle that fails is split by what its cell says, though this share of the bound may be the cell's: the first while there
 /// are finer cells, the second when there are none.
-constexpr double kClear = 0.4, kVague = 0.8;
+constexpr double kClear = 0.4, kVagueShare = 0.8;
 /// Cells this much wider than a triangle are not tried.
 constexpr double kLarge = 3, kLargePolynomial = 2;  // the second where cells cost little
 /// Pieces of the triangle's own box are tried where a bound is within this factor of the tolerance.
 constexpr double kNear = 2;
+/// Models as inaccurate as the first serve all triangles in their cells; those of a triangle's own box, as inaccurate as the second, are sharper than intervals.
+constexpr double kSharp = 0.02, kVague = 0.1;
+/// Cells are halved for models so often at most, and no further than to the triangle's size.
+constexpr int kDeepest = 40;
 
 Box half_of(const Box& box, int k) {
     const double mu = mid(box.u), mv = mid(box.v);
@@ -25,18 +29,30 @@ bool inside(const Box& box, const Box& of) { return box.u.lo >= of.u.lo && box.u
 
 }  // namespace
 
-BoundCell::BoundCell(const Patch& patch, const Box& box) : BoundCell(patch, box, box, std::make_shared<PolynomialCell>(patch, box)) {}
-BoundCell::BoundCell(const Patch& patch, const Box& box, const Box& reach, std::shared_ptr<const PolynomialCell> exact)
-    : box_(box), reach_(reach), exact_(std::move(exact)), model_(exact_->exists() ? (*exact_)(reach) : SecondDerivatives(patch, reach)) {}
+BoundCell::BoundCell(const Patch& patch, const Box& box) : box_(box), reach_(box), polynomial_(std::make_shared<PolynomialCell>(patch, box)) {
+    if (!polynomial_->exists()) {
+        source_ = std::make_shared<ModelSource>(patch, box);
+        polynomial_ = std::make_shared<PolynomialCell>(source_->over(patch, box));
+    }
+    sharp_ = polynomial_->exists() && polynomial_->inaccuracy() <= kSharp;
+    model_ = polynomial_->exists() ? (*polynomial_)(reach_) : SecondDerivatives(patch, reach_);
+}
+BoundCell::BoundCell(const Patch& patch, const Box& box, const Box& reach, const BoundCell& parent)
+    : box_(box), reach_(reach), polynomial_(parent.sharp_ ? parent.polynomial_ : std::make_shared<PolynomialCell>(parent.source_->over(patch, reach))), source_(parent.source_),
+      sharp_(parent.sharp_ || (polynomial_->exists() && polynomial_->inaccuracy() <= kSharp)),
+      model_(polynomial_->exists() ? (*polynomial_)(reach) : SecondDerivatives(patch, reach)) {}
+
 SecondDerivatives BoundCell::model_of(const Patch& patch, const Box& box, int parts) const {
-    if (exact_->exists()) return parts > 1 ? (*exact_)(box, parts) : (*exact_)(box);
+    const auto over = [&](const PolynomialCell& cell) { return parts > 1 ? cell(box, parts) : cell(box); };
+    if (sharp_) return over(*polynomial_);
     auto& last = last_[parts > 1];
     const auto same = [](const Interval& a, const Interval& b) { return a.lo == b.lo && a.hi == b.hi; };
     {
         const std::lock_guard lock(last_guard_);
         if (last && last->parts == parts && same(last->box.u, box.u) && same(last->box.v, box.v)) return last->model;
     }
-    auto fresh = std::make_unique<const Last>(Last{box, parts, SecondDerivatives(patch, box, parts)});
+    const PolynomialCell own = source_->over(patch, box);
+    auto fresh = std::make_unique<const Last>(Last{box, parts, own.exists() && own.inaccuracy() <= kVague ? over(own) : SecondDerivatives(patch, box, parts)});
     const SecondDerivatives model = fresh->model;
     const std::lock_guard lock(last_guard_);
     last = std::move(fresh);
@@ -46,7 +62,6 @@ BoundCell::~BoundCell() {
     for (auto& c : children_) delete c.load();
 }
 
-/// The child whose reach holds the box, made if it is not there yet; nullptr where none holds it.
 const BoundCell* BoundCell::child(const Patch& patch, const Box& of) const {
     const int k = (mid(of.u) >= mid(box_.u) ? 1 : 0) + (mid(of.v) >= mid(box_.v) ? 2 : 0);
     if (BoundCell* c = children_[k].load(std::memory_order_acquire)) return inside(of, c->reach_) ? c : nullptr;
@@ -55,7 +70,7 @@ const BoundCell* BoundCell::child(const Patch& patch, const Box& of) const {
     const Box reach{{std::max(reach_.u.lo, half.u.lo - gu), std::min(reach_.u.hi, half.u.hi + gu)}, {std::max(reach_.v.lo, half.v.lo - gv), std::min(reach_.v.hi, half.v.hi + gv)}};
     if (!inside(of, reach)) return nullptr;
     if (patch.domain() == Domain::triangle && mid(reach.u) + mid(reach.v) > 1) return nullptr;  // its centre has to be a point of the domain
-    auto fresh = std::unique_ptr<BoundCell>(new BoundCell(patch, half, reach, exact_));
+    auto fresh = std::unique_ptr<BoundCell>(new BoundCell(patch, half, reach, *this));
     BoundCell* expected = nullptr;
     if (children_[k].compare_exchange_strong(expected, fresh.get(), std::memory_order_acq_rel)) return fresh.release();
     return expected;  // another thread was faster, with the same numbers
@@ -63,13 +78,19 @@ const BoundCell* BoundCell::child(const Patch& patch, const Box& of) const {
 
 const BoundCell* BoundCell::around(const Patch& patch, const Box& box) const {
     const auto width = [](const Interval& x) { return x.hi - x.lo; };
-    const double large = exact_->exists() ? kLargePolynomial : kLarge;
     const BoundCell* cell = this;
-    while (width(cell->box_.u) > large * width(box.u) && width(cell->box_.v) > large * width(box.v)) {
+    const auto large = [&] { return cell->sharp_ ? kLargePolynomial : kLarge; };
+    while (width(cell->box_.u) > large() * width(box.u) && width(cell->box_.v) > large() * width(box.v)) {
         const BoundCell* finer = cell->child(patch, box);
         if (!finer) break;
         cell = finer;
     }
+    return cell;
+}
+
+const BoundCell* BoundCell::sharp_cell(const Patch& patch, const Box& box) const {
+    const BoundCell* cell = this;
+    for (int depth = 0; cell && !cell->sharp_; ++depth) cell = depth < kDeepest && cell->wider(box) ? cell->child(patch, box) : nullptr;
     return cell;
 }
 
@@ -95,7 +116,7 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
             if (help < kClear) return b;
         }
         const BoundCell* finer = cell->child(patch, box);
-        if (!finer && help < kVague) return by(cell->model_);
+        if (!finer && help < kVagueShare) return by(cell->model_);
         if (!finer) break;
         cell = finer;
     }
@@ -109,7 +130,7 @@ TriangleBound BoundCell::bound(const Patch& patch, const BoundCell*& cell, const
         if (finer.own(measure) < sharpest.own(measure)) sharpest = finer;
         if (sharpest.own(measure) <= tolerance) return sharpest;
     }
-    if (cell->exact_->exists() && (sharpest.quiet || sharpest.own(measure) > kNear * tolerance)) return sharpest;  // first derivatives would not tell more
+    if (cell->sharp_ && (sharpest.quiet || sharpest.own(measure) > kNear * tolerance)) return sharpest;  // first derivatives would not tell more
     const TriangleBound rough = bound_triangle(patch, triangle.uv, triangle.points);
     if (rough.parametric < sharpest.parametric) {
         sharpest.parametric = rough.parametric;
@@ -143,10 +164,10 @@ void BoundCell::sharpen(const Patch& patch, std::span<const CornerData> triangle
     const auto own = [&](int k) { return bounds[k].own(asked.measure); };
     LanesAsked least = asked, pieces = asked;
     least.least = true, least.turns = false, pieces.parts = SecondDerivatives::pieces;
-    in_lanes(*exact_, triangles, which, least, [&](int k, const TriangleBound& b) {
+    in_lanes(*polynomial_, triangles, which, least, [&](int k, const TriangleBound& b) {
         if (!(b.own(asked.measure) > (1 - kClear) * own(k)) && own(k) <= kNear * room(k)) near.push_back(k);
     });
-    in_lanes(*exact_, triangles, near, pieces, [&](int k, const TriangleBound& b) {
+    in_lanes(*polynomial_, triangles, near, pieces, [&](int k, const TriangleBound& b) {
         if (b.own(asked.measure) < own(k)) bounds[k] = b;
         if (!(own(k) <= room(k)) && !bounds[k].quiet) rough.push_back(k);
     });
@@ -162,7 +183,7 @@ void BoundCell::bound_all(const Patch& patch, std::span<const CornerData> triang
     const LanesAsked asked{measure, 1, false, turn != TriangleBound::unasked};
     std::vector<int> all(triangles.size()), above;
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = int(k);
-    in_lanes(*exact_, triangles, all, asked, [&](int k, const TriangleBound& b) {
+    in_lanes(*polynomial_, triangles, all, asked, [&](int k, const TriangleBound& b) {
         bounds[k] = b;
         if (!(b.own(measure) <= tolerance - triangles[std::size_t(k)].slack)) above.push_back(k);
     });

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "bound.h"
+#include "model_source.h"
 #include "second_derivatives.h"
 #include "triangle_lanes.h"
 
@@ -31,25 +32,33 @@ public:
     static TriangleBound bound(const Patch& patch, const BoundCell*& cell, const CornerData& triangle, double tolerance, Measure measure,
                                double turn = TriangleBound::none, bool decide = false);
 
-    /// Bounds triangles of this cell, which is one between breaks with polynomial().exists(), each by its own box and so as sharply as the above can: eight
+    /// The cell of the tree below this one whose polynomial serves the box as well as a smaller cell's would; nullptr where there is none.
+    const BoundCell* sharp_cell(const Patch& patch, const Box& box) const;
+    /// Bounds triangles of this cell, which is a sharp_cell() of each, by their own boxes and so as sharply as the above can: eight
     /// at once. `tolerance` is that of the mesh, the slack of the triangles included; `bounds` has their number. `quick`: less sharply. Thread-safe.
     void bound_all(const Patch& patch, std::span<const CornerData> triangles, double tolerance, Measure measure, double turn, bool quick, TriangleBound* bounds) const;
     /// A cell of the tree below this one that is not much wider than the triangle.
     const BoundCell* around(const Patch& patch, const Box& box) const;
 
+    /// Of a box in the cell, as sharp as can be; third derivatives are enclosed over parts x parts pieces.
+    SecondDerivatives model_of(const Patch& patch, const Box& box, int parts = 1) const;
     const SecondDerivatives& model() const { return model_; }
-    const PolynomialCell& polynomial() const { return *exact_; }
+    /// The surface, or near it; need not exist.
+    const PolynomialCell& polynomial() const { return *polynomial_; }
+    /// At least the distance of x from the surface at p, a point of the cell, which is one between breaks; infinite where that takes intervals.
+    double quick_slack(const Vec2& p, const Point& x) const { return polynomial_->exact() ? polynomial_->slack(p, x) : source_->slack(p, x); }
 
 private:
-    BoundCell(const Patch& patch, const Box& box, const Box& reach, std::shared_ptr<const PolynomialCell> exact);
+    BoundCell(const Patch& patch, const Box& box, const Box& reach, const BoundCell& parent);
+    bool wider(const Box& box) const { return box_.u.hi - box_.u.lo > box.u.hi - box.u.lo && box_.v.hi - box_.v.lo > box.v.hi - box.v.lo; }
+    /// The child whose reach holds the box, made if it is not there yet; nullptr where none holds it.
     const BoundCell* child(const Patch& patch, const Box& of) const;
     void sharpen(const Patch& patch, std::span<const CornerData> triangles, std::span<const int> which, double tolerance, const LanesAsked& asked, TriangleBound* bounds) const;
-    /// Of a box in the cell.
-    SecondDerivatives model_of(const Patch& patch, const Box& box, int parts = 1) const;
-
     Box box_;    // children halve it
     Box reach_;  // a margin wider: triangles that lie in here are served
-    std::shared_ptr<const PolynomialCell> exact_;
+    std::shared_ptr<const PolynomialCell> polynomial_;
+    std::shared_ptr<const ModelSource> source_;  // none where the polynomial is exact
+    bool sharp_;                                 // the polynomial serves all triangles in here, and all cells below
     SecondDerivatives model_;
     mutable std::array<std::atomic<BoundCell*>, 4> children_{};
     /// What model_of() was asked last, by whether in one piece: the two triangles of a quadrilateral mostly share their box.

@@ -126,6 +126,11 @@ EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : p
                 whole_.clear();
                 return;
             }
+    // A denominator that vanishes at an end, as at the vertices of side-vertex surfaces, has a quotient there that its form does not tell.
+    if (whole_.size() == 4 && !(whole_[3].c[0].at(-1).lo > 0 && whole_[3].c[0].at(1).lo > 0)) {
+        whole_.clear(), exact_.clear();
+        return;
+    }
     find_directions();
 }
 

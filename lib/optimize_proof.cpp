@@ -22,7 +22,7 @@ void FreePatch::sharpen(std::uint32_t i) {
     FreeTriangle& t = triangles_[i];
     t.sharp = true;
     const Places p = places(t.corner);
-    const TriangleBound b = bound_triangle(SecondDerivatives(patch_, box_of(p.uv), SecondDerivatives::pieces), p.corners(), measure_);
+    const TriangleBound b = bound_triangle(t.root->model_of(patch_, box_of(p.uv), SecondDerivatives::pieces), p.corners(), measure_);
     if (!b.quiet) return;
     t.proof.parametric = std::min(t.proof.parametric, b.parametric), t.proof.normal = std::min(t.proof.normal, b.normal);
     for (int k = 0; k < 3; ++k) t.proof.across[k] = std::min(t.proof.across[k], b.across[k]), t.proof.beside[k] = std::min(t.proof.beside[k], b.beside[k]);

@@ -2,7 +2,7 @@
 //
 // A formula F has `static constexpr Domain domain` and, on a rectangle, `operator()(u, v)`, on the triangle
 // `operator()(u, v, w)`, templated on the scalars, returning a Vec3. Optional: rect(), breaks_u(), breaks_v(), and with the parameters of
-// operator() homogeneous(), the same as polynomials x, y, z and, when rational, their denominator.
+// operator() homogeneous(), the same as polynomials x, y, z and, when rational, their denominator, which may vanish at corners.
 // A formula that is made of cells between its breaks picks its cell by cell_of(breaks, u).
 #pragma once
 #include <algorithm>

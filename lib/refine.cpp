@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace isoparm {
 namespace {
@@ -25,7 +26,7 @@ template <class Count, class F> void for_all(std::size_t members, Count count, F
 /// Triangles that are bounded in one go.
 constexpr std::size_t kTogether = 64;
 /// Slack below this part of the tolerance need not be sharp.
-constexpr double kFew = 1e-8;
+constexpr double kFew = 1e-6;
 
 }  // namespace
 
@@ -64,8 +65,8 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
             const Point& x = positions_[mesh.vertex[i]];
             const auto on = [](double t, const std::vector<double>& breaks) { return std::binary_search(breaks.begin(), breaks.end(), t); };
             const auto c = std::uint32_t(i);
-            const PolynomialCell* cell = on(p.x, mesh.breaks_u) || on(p.y, mesh.breaks_v) ? nullptr : &mesh.root_of({c, c, c})->polynomial();
-            const double quick = cell && cell->exists() ? cell->slack(p, x) : tolerance_;
+            const bool on_line = on(p.x, mesh.breaks_u) || on(p.y, mesh.breaks_v);
+            const double quick = on_line ? tolerance_ : mesh.root_of({c, c, c})->quick_slack(p, x);
             mesh.slack[i] = quick <= kFew * tolerance_ ? quick : slack_of(surface_[member].patch, p, x);
         }
     });
@@ -78,27 +79,41 @@ CornerData Refinement::corners_of(const PatchMesh& mesh, const PatchTriangle& t)
     return data;
 }
 
-void Refinement::bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide) const {
+void Refinement::bound(const PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide) const {
     const CornerData data = corners_of(mesh, t);
     t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_, turn_, decide);
 }
 
-/// Those of one polynomial cell after the other go together.
+/// Those of one sharp cell after the other go together.
 void Refinement::bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const {
+    std::array<PatchTriangle*, kTogether> all;
+    for (std::size_t i = first; i < last; ++i) all[i - first] = &mesh.triangles[mesh.fresh[i]];
+    bound_together(mesh, member, {all.data(), last - first}, false);
+}
+
+void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const {
+    const Patch& patch = surface_[member].patch;
     std::array<CornerData, kTogether> data;
     std::array<TriangleBound, kTogether> bounds;
-    const auto triangle = [&](std::size_t i) -> PatchTriangle& { return mesh.triangles[mesh.fresh[i]]; };
-    while (first < last) {
-        const BoundCell* cell = triangle(first).cell;
-        if (!cell->polynomial().exists()) {
-            bound(mesh, member, triangle(first++));
-            continue;
-        }
-        std::size_t n = 0;
-        while (first + n < last && triangle(first + n).cell == cell) data[n] = corners_of(mesh, triangle(first + n)), ++n;
-        cell->bound_all(surface_[member].patch, {data.data(), n}, tolerance_, measure_, turn_, false, bounds.data());
-        for (std::size_t i = 0; i < n; ++i) triangle(first++).proof = bounds[i];
+    std::array<PatchTriangle*, kTogether> here;
+    for (PatchTriangle*& t : triangles) {
+        if (t->cell->polynomial().exact()) continue;
+        if (const BoundCell* cell = sharp_cell(mesh, member, *t)) t->cell = cell;
+        else bound(mesh, member, *t, quick), t = nullptr;
     }
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        if (!triangles[i]) continue;
+        const BoundCell* cell = triangles[i]->cell;
+        std::size_t n = 0;
+        for (std::size_t k = i; k < triangles.size(); ++k)
+            if (triangles[k] && triangles[k]->cell == cell) here[n] = std::exchange(triangles[k], nullptr), data[n] = corners_of(mesh, *here[n]), ++n;
+        cell->bound_all(patch, {data.data(), n}, tolerance_, measure_, turn_, quick, bounds.data());
+        for (std::size_t k = 0; k < n; ++k) here[k]->proof = bounds[k];
+    }
+}
+
+const BoundCell* Refinement::sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const {
+    return t.cell->sharp_cell(surface_[member].patch, box_of({mesh.uv[t.corner[0]], mesh.uv[t.corner[1]], mesh.uv[t.corner[2]]}));
 }
 
 bool Refinement::bound_and_mark() {

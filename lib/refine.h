@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "bound_cell.h"
@@ -144,13 +145,16 @@ private:
     void measure_slack(std::uint32_t member, std::size_t first);
     void collect_slack(const std::vector<std::size_t>& first);
     CornerData corners_of(const PatchMesh& mesh, const PatchTriangle& t) const;
-    void bound(PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
+    void bound(const PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
+    /// 64 at most: eight at once where polynomials serve; `quick`: less sharply. Uses the list up.
+    void bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const;
+    const BoundCell* sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const;
     void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
     bool may_lose(const PatchMesh& mesh) const;
     bool keeps(const PatchMesh& mesh, const PatchTriangle& t) const;
     struct Flip;
     Flip flip_of(const PatchMesh& mesh, std::uint32_t triangle, int edge) const;
-    bool in_vain(const PatchMesh& mesh, const Flip& f) const;
+    bool in_vain(const PatchMesh& mesh, std::uint32_t member, const Flip& f) const;
     bool flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) const;
     bool flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, bool with_neighbours) const;
     void mark(PatchMesh& mesh, std::uint32_t edge);

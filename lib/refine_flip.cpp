@@ -31,6 +31,7 @@ const BoundCell* PatchMesh::root_of(const std::array<std::uint32_t, 3>& corner) 
 struct Refinement::Flip {
     std::uint32_t i = kNone, j = kNone, diagonal = kNone, from = 0, to = 0;  // kNone: it cannot be turned
     PatchTriangle left, right;
+    bool together = false;  // polynomials serve both
 };
 
 /// Edge k of a triangle, turned into the other diagonal of the quadrilateral around it.
@@ -86,32 +87,32 @@ bool Refinement::flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) cons
 }
 
 /// Is the surface farther than the tolerance from the middle of the new diagonal? Nothing is proved by that.
-bool Refinement::in_vain(const PatchMesh& mesh, const Flip& f) const {
+bool Refinement::in_vain(const PatchMesh& mesh, std::uint32_t member, const Flip& f) const {
     const Vec2 &p = mesh.uv[f.from], &q = mesh.uv[f.to];
-    const Point x = f.left.cell->polynomial().point({0.5 * p.x + 0.5 * q.x, 0.5 * p.y + 0.5 * q.y});
-    const Point d = x - 0.5 * (positions_[mesh.vertex[f.from]] + positions_[mesh.vertex[f.to]]);
+    const Vec2 middle{0.5 * p.x + 0.5 * q.x, 0.5 * p.y + 0.5 * q.y};
+    const PolynomialCell& near = f.left.cell->polynomial();
+    const Point d = (near.exact() ? near.point(middle) : surface_[member].patch.point(middle.x, middle.y)) - 0.5 * (positions_[mesh.vertex[f.from]] + positions_[mesh.vertex[f.to]]);
     return (measure_ == Measure::parametric ? length(d) : std::fabs(dot(d, mesh.triangles[f.i].proof.unit))) > tolerance_;
 }
 
-/// The worst edge first. In polynomial cells all that can be turned are bounded together.
+/// The worst edge first. Where polynomials serve, all that can be turned are bounded together.
 bool Refinement::flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t i, bool with_neighbours) const {
     const int worst = mesh.triangles[i].proof.worst_edge;
     std::array<Flip, 3> flips;
-    std::array<CornerData, 6> data;
-    std::array<TriangleBound, 6> bounds;
-    std::size_t n = 0;
-    for (int k = 0; k < 3; ++k)
-        if (Flip f = flip_of(mesh, i, (worst + k) % 3); f.i != kNone && !(f.left.cell->polynomial().exists() && in_vain(mesh, f))) flips[n++] = f;
-    if (n == 0) return false;
-    const BoundCell* cell = flips[0].left.cell;
-    const bool together = cell->polynomial().exists();
-    for (std::size_t k = 0; k < n && together; ++k) data[2 * k] = corners_of(mesh, flips[k].left), data[2 * k + 1] = corners_of(mesh, flips[k].right);
-    if (together) cell->bound_all(surface_[member].patch, {data.data(), 2 * n}, tolerance_, measure_, turn_, true, bounds.data());
+    std::array<PatchTriangle*, 6> together;
+    std::size_t n = 0, count = 0;
+    for (int k = 0; k < 3; ++k) {
+        Flip f = flip_of(mesh, i, (worst + k) % 3);
+        if (f.i == kNone) continue;
+        f.together = sharp_cell(mesh, member, f.left) && sharp_cell(mesh, member, f.right);
+        if (!(f.together && in_vain(mesh, member, f))) flips[n++] = f;
+    }
+    for (std::size_t k = 0; k < n; ++k)
+        if (flips[k].together) together[count++] = &flips[k].left, together[count++] = &flips[k].right;
+    bound_together(mesh, member, {together.data(), count}, true);
     for (std::size_t k = 0; k < n; ++k) {
         Flip& f = flips[k];
-        if (together) {
-            f.left.proof = bounds[2 * k], f.right.proof = bounds[2 * k + 1];
-        } else {
+        if (!f.together) {
             bound(mesh, member, f.left, true);
             if (!keeps(mesh, f.left)) continue;
             bound(mesh, member, f.right, true);

@@ -11,6 +11,9 @@ namespace {
 Point middle(const Vec3<Interval>& x) { return {mid(x.x), mid(x.y), mid(x.z)}; }
 double radius(const Vec3<Interval>& x) { return rounding::length_up(rad(x.x), rad(x.y), rad(x.z)); }
 double size_of(const Point& x) { return rounding::length_up(std::fabs(x.x), std::fabs(x.y), std::fabs(x.z)); }
+/// Second derivatives along the normal below this part of all of them count as that: a plane has none.
+constexpr double kVagueNormal = 0.02;
+constexpr double kBinomial[6][6] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}, {1, 4, 6, 4, 1}, {1, 5, 10, 10, 5, 1}};
 bool bounded(const Vec3<Interval>& x) { return x.x.bounded() && x.y.bounded() && x.z.bounded(); }
 
 /// Piece (i, j) of parts x parts.
@@ -97,12 +100,44 @@ PolynomialCell::PolynomialCell(const Patch& patch, const Box& box) {
     for (int axis = 0; axis < 3; ++axis)
         for (int s = 0; s <= form[axis].degree_u(); ++s)
             for (int t = 0; t <= form[axis].degree_v(); ++t) c_[std::size_t(s * (q_ + 1) + t)][std::size_t(axis)] = mid(form[axis].coefficient(s, t));
-    bound_errors(form, rounding::up(rad(u)), rounding::up(rad(v)));
+    const auto radius = [&](std::size_t n, int axis) {
+        const int i = int(n) / (q_ + 1), j = int(n) % (q_ + 1);
+        if (i > form[axis].degree_u() || j > form[axis].degree_v()) return 0.0;
+        const Interval& c = form[axis].coefficient(i, j);
+        return c.lo == c.hi ? 0 : rad(c);
+    };
+    bound_errors(radius, rounding::up(rad(u)), rounding::up(rad(v)));
+}
+
+PolynomialCell::PolynomialCell(int p, int q, double u, double v, double hu, double hv, std::vector<Lanes> c, const std::array<double, 3>& off)
+    : p_(p), q_(q), u_(u), v_(v), c_(std::move(c)), off_(off), hu_(hu), hv_(hv) {
+    double all = off[0] + off[1] + off[2];
+    for (const Lanes& x : c_) all += std::fabs(x[0]) + std::fabs(x[1]) + std::fabs(x[2]);
+    if (!(all < kLargestDerivative) || !in_scale(hu) || !in_scale(hv)) {
+        c_.clear();
+        return;
+    }
+    bound_errors([](std::size_t, int) { return 0.0; }, hu, hv);
+}
+
+double PolynomialCell::inaccuracy() const {
+    if (exact()) return 0;
+    const double scale[3] = {hu_ * hu_, 2 * hu_ * hv_, hv_ * hv_};
+    const auto at = [&](int i, int j) { return i <= p_ && j <= q_ ? Point{c_[std::size_t(i * (q_ + 1) + j)][0], c_[std::size_t(i * (q_ + 1) + j)][1], c_[std::size_t(i * (q_ + 1) + j)][2]} : Point{}; };
+    const Point n = normalized(cross(at(1, 0), at(0, 1)));
+    const bool known = finite(n);
+    double all = 0, along = 0, off = 0;
+    for (int k = 0; k < 3; ++k) {
+        const Point h = (k == 1 ? 1.0 : 2.0) * at(2 - k, k);
+        all += scale[k] * length(h), along += known ? scale[k] * std::fabs(dot(n, h)) : 0, off += scale[k] * off_[std::size_t(k)];
+    }
+    const double size = std::max(along, kVagueNormal * all);
+    return off == 0 ? 0 : off / size;
 }
 
 /// In repeated synthetic division every term of a sum passes 2 p additions and p products, and has p rounded factors u - u_ at most; the same
 /// along v. So rounding is below 4 (p + q) units of the sum of the terms' sizes; 8 more are for scaling by 2 or 6.
-void PolynomialCell::bound_errors(const std::vector<Polynomial>& form, double hu, double hv) {
+template <class Radius> void PolynomialCell::bound_errors(Radius radius, double hu, double hv) {
     const double relative = (4.0 * (p_ + q_) + 8) * 0x1p-53 * (1 + 1e-12);
     error_.assign(c_.size(), 0.0);
     for (int i = 0; i <= p_; ++i)
@@ -112,12 +147,12 @@ void PolynomialCell::bound_errors(const std::vector<Polynomial>& form, double hu
             for (int s = i; s <= p_; ++s, x *= hu) {
                 double y = 1;
                 for (int t = j; t <= q_; ++t, y *= hv) {
-                    const double weight = binomial(s, i) * binomial(t, j) * x * y;
+                    const double weight = kBinomial[s][i] * kBinomial[t][j] * x * y;
                     weights += weight;
+                    const auto n = std::size_t(s * (q_ + 1) + t);
                     for (int axis = 0; axis < 3; ++axis) {
-                        if (s > form[axis].degree_u() || t > form[axis].degree_v()) continue;
-                        const Interval& c = form[axis].coefficient(s, t);
-                        each[axis] += weight * (relative * mag(c) + (c.lo == c.hi ? 0 : rad(c)));
+                        const double known = radius(n, axis);
+                        each[axis] += weight * (relative * (std::fabs(c_[n][std::size_t(axis)]) + known) + known);
                     }
                 }
             }
@@ -134,7 +169,6 @@ void step(Lanes& x, const Lanes& y, double d) {
     for (std::size_t lane = 0; lane < 4; ++lane) x[lane] += y[lane] * d;
 }
 
-constexpr double kBinomial[6][6] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}, {1, 4, 6, 4, 1}, {1, 5, 10, 10, 5, 1}};
 
 }  // namespace
 
@@ -183,7 +217,7 @@ template <int P, int Q> SecondDerivatives PolynomialCell::over(const Box& box) c
     const auto point = [](const Lanes& x, double scale) { return Point{scale * x[0], scale * x[1], scale * x[2]}; };
     for (int k = 0; k < 3; ++k) {
         const double scale = k == 1 ? 1 : 2;
-        m.h[std::size_t(k)] = point(coefficient(2 - k, k), scale), m.h_rad[std::size_t(k)] = safe(scale * error(2 - k, k));
+        m.h[std::size_t(k)] = point(coefficient(2 - k, k), scale), m.h_rad[std::size_t(k)] = safe(scale * error(2 - k, k) + off_[std::size_t(k)]);
     }
     // Third derivatives over the box: the coefficient, and multiples of those behind it. Where both powers are even the multiple is from 0 up.
     double power_u[size] = {1}, power_v[size] = {1};

@@ -49,8 +49,8 @@ void look_at(const Patch& patch, const BoundCell& root, Random& random, const st
     const TriangleBound own = bound_triangle(patch, uv, data.points);
     const BoundCell* cell = &root;
     const TriangleBound b = BoundCell::bound(patch, cell, data, own.parametric * random.number(), Measure::geometric);
-    TriangleBound lanes = b;  // those of polynomial cells, as the refinement uses them
-    if (root.polynomial().exists()) root.bound_all(patch, {&data, 1}, own.parametric * random.number(), Measure::geometric, TriangleBound::unasked, false, &lanes);
+    TriangleBound lanes = b;  // those of polynomials, as the refinement uses them
+    if (const BoundCell* sharp = root.sharp_cell(patch, box_of(uv))) sharp->bound_all(patch, {&data, 1}, own.parametric * random.number(), Measure::geometric, TriangleBound::unasked, false, &lanes);
     ++tally.triangles, tally.quiet += b.quiet, tally.unbounded += !std::isfinite(std::min(own.parametric, b.parametric));
     bool wrong = false, tight = false;
     const auto compare = [&](double seen, double bound) {

@@ -1,5 +1,6 @@
 #include "patches/side_vertex.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "patch_model.h"
@@ -15,6 +16,41 @@ struct Bulge {
     const Point &from, &to;
     template <class S> auto operator()(const S& t) const { return edge(t) - ((1.0 - t) * from + t * to); }
     double size() const { return length(from) + length(to); }  // of the terms, whose difference may vanish
+};
+
+Polynomial power(const Polynomial& x, int n) {
+    Polynomial y(1);
+    for (int k = 0; k < n; ++k) y = y * x;
+    return y;
+}
+
+/// Forms of higher degree than this take long and serve nobody (ModelSource).
+constexpr int kMostDegree = 9;
+
+/// H(r) g(a/r), r = a + b, as polynomials x, y, z over r^order, where H and g are polynomials: each term h r^i g (a/r)^j is one over r^(j-i).
+struct RationalCone {
+    Vec3<Polynomial> sum;
+    int order = 0, degree = 0;  // degree: of the sum
+    bool exists = true;
+
+    template <class G> RationalCone(const Function& H, const G& g, const Curve& edge, const Polynomial& a, const Polynomial& b) {
+        const Polynomial t = Polynomial::variable_u({-1, 1}), h = H(t);  // coefficients of the powers of t
+        const Vec3<Polynomial> x = g(t);
+        exists = edge.breaks().empty() && h.exists() && x.x.exists() && x.y.exists() && x.z.exists() && zero(h.coefficient(0, 0));
+        if (!exists) return;
+        int lowest = 0;
+        while (lowest < h.degree_u() && zero(h.coefficient(lowest, 0))) ++lowest;
+        const Polynomial r = a + b;
+        order = std::max({x.x.degree_u(), x.y.degree_u(), x.z.degree_u(), lowest}) - lowest, degree = order + h.degree_u();
+        if (degree > kMostDegree) {
+            exists = false;
+            return;
+        }
+        for (int axis = 0; axis < 3; ++axis)
+            for (int i = lowest; i <= h.degree_u(); ++i)
+                for (int j = 0; j <= x[axis].degree_u(); ++j) sum[axis] = sum[axis] + power(a, j) * power(r, order + i - j) * Polynomial(h.coefficient(i, 0) * x[axis].coefficient(j, 0));
+    }
+    static bool zero(const Interval& x) { return x.lo == 0 && x.hi == 0; }
 };
 
 struct SideVertex {
@@ -40,6 +76,27 @@ struct SideVertex {
             case SideVertexPart::s4: return plane;
             default: return plane + bent1() + bent2() + bent3();
         }
+    }
+    /// Over one denominator, which vanishes at the corners.
+    std::vector<Polynomial> homogeneous(const Polynomial& u, const Polynomial& v, const Polynomial& w) const {
+        if (part != SideVertexPart::sum) return {};
+        const bool bulges = form == SideVertexForm::delta;
+        const auto bent = [&](int k, const Point& from, const Point& to, const Polynomial& a, const Polynomial& b) {
+            return bulges ? RationalCone(H, Bulge{E[k], from, to}, E[k], a, b) : RationalCone(H, E[k], E[k], a, b);
+        };
+        const RationalCone cones[3] = {bent(0, B, C, w, v), bent(1, C, A, u, w), bent(2, A, B, v, u)};
+        if (!cones[0].exists || !cones[1].exists || !cones[2].exists) return {};
+        const int orders = cones[0].order + cones[1].order + cones[2].order;
+        if (std::max({cones[0].degree - cones[0].order, cones[1].degree - cones[1].order, cones[2].degree - cones[2].order}) + orders > kMostDegree) return {};
+        const Polynomial powers[3] = {power(w + v, cones[0].order), power(u + w, cones[1].order), power(v + u, cones[2].order)};
+        const Vec3<Polynomial> flat = bulges ? Vec3<Polynomial>(u * A + v * B + w * C) : Vec3<Polynomial>(H(u) * A + H(v) * B + H(w) * C);
+        std::vector<Polynomial> x(4);
+        x[3] = powers[0] * powers[1] * powers[2];
+        for (int axis = 0; axis < 3; ++axis) {
+            x[std::size_t(axis)] = x[3] * (bulges ? flat[axis] : -flat[axis]);
+            for (int k = 0; k < 3; ++k) x[std::size_t(axis)] = x[std::size_t(axis)] + cones[k].sum[axis] * powers[(k + 1) % 3] * powers[(k + 2) % 3];
+        }
+        return x;
     }
     template <class U, class V, class W> auto seed(const U& u, const V& v, const W& w) const {
         using Sum = decltype(u * A + v * B + w * C);
