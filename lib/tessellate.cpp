@@ -188,35 +188,6 @@ void report_normals(const Refinement& refinement, double limit, Tessellation& re
 
 double join_tolerance(double tolerance, double diagonal) { return std::min(1e-6 * diagonal, tolerance / 16); }
 
-// (0.3849 I+ + 0.2236 I-) / tolerance, I the integrals of sqrt|K| dA = sqrt|LN - M^2| du dv over K > 0 and K < 0, by the
-// midpoint rule (Fejes Toth; Gruber; Atariah, Rote and Wintraecken 2018).
-double optimal_triangles(const Patch& patch, double tolerance) {
-    constexpr int n = 32;
-    const std::vector<double> us = patch.lines_u(), vs = patch.lines_v();
-    double convex = 0, saddle = 0;
-    for (std::size_t a = 0; a + 1 < us.size(); ++a)
-        for (std::size_t b = 0; b + 1 < vs.size(); ++b)
-            for (int i = 0; i < n; ++i)
-                for (int j = 0; j < n; ++j) {
-                    double u = us[a] + (us[a + 1] - us[a]) * (i + 0.5) / n, v = vs[b] + (vs[b + 1] - vs[b]) * (j + 0.5) / n;
-                    double area = (us[a + 1] - us[a]) * (vs[b + 1] - vs[b]) / (n * n);
-                    if (patch.domain() == Domain::triangle) {  // the square folded onto the triangle
-                        area *= 1 - u;
-                        v *= 1 - u;
-                    }
-                    const PointJet x = patch.jet(u, v);
-                    const auto d = [&](int p, int q) { return Point{x.x.coefficient(p, q), x.y.coefficient(p, q), x.z.coefficient(p, q)}; };
-                    const Point normal = cross(d(1, 0), d(0, 1));
-                    const double size = length(normal);
-                    if (!(size > 0)) continue;
-                    const double L = 2 * dot(d(2, 0), normal) / size, M = dot(d(1, 1), normal) / size, N = 2 * dot(d(0, 2), normal) / size;
-                    const double k = L * N - M * M;
-                    if (!std::isfinite(k)) continue;
-                    (k > 0 ? convex : saddle) += std::sqrt(std::fabs(k)) * area;
-                }
-    return (2 / (3 * std::sqrt(3.0)) * convex + 1 / (2 * std::sqrt(5.0)) * saddle) / tolerance;
-}
-
 Tessellation tessellate(const Composite& surface, const TessellationOptions& options) {
     if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) throw_input("found tolerance " + to_text(options.tolerance) + ", expected a positive number");
     if (!(options.normal_deviation >= 0 && options.normal_deviation < 90))
@@ -255,10 +226,12 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
         throw std::logic_error("the mesh has " + std::to_string(result.topology.t_junctions) + " T-junctions: please report this scene");
     result.seconds_tessellate = seconds_since(start);
     start = std::chrono::steady_clock::now();
+    std::vector<double> optimal(surface.size(), 0.0);
+    if (options.study) tbb::parallel_for(std::size_t(0), optimal.size(), [&](std::size_t m) { optimal[m] = optimal_triangles(surface[m].patch, options.tolerance); });
     for (std::size_t m = 0; m < surface.size(); ++m) {
         const auto& part = result.mesh.parts[m];
         result.certified_error = std::max(result.certified_error, part.certified_error);
-        result.surfaces.push_back({part.name, part.triangles.size(), part.certified_error, options.study ? optimal_triangles(surface[m].patch, options.tolerance) : 0});
+        result.surfaces.push_back({part.name, part.triangles.size(), part.certified_error, optimal[m]});
     }
     if (turns) report_normals(refinement, turn, result);
     if (options.study) result.sampled_error = refinement.sampled_error();
