@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <iostream>
 
-#include "certificate_cover.h"
 #include "certificate_file.h"
 #include "commands/output.h"
 #include "commands/selection.h"
