@@ -13,7 +13,7 @@ constexpr double kFew = 1.05, kMany = 0.75;  // of the vertices wanted on a line
 constexpr double kPeak = 64;          // times the median of all samples
 constexpr double kStep = 1.19;        // between the numbers of lines that are tried
 constexpr int kInVain = 2;            // steps that do not help end the search
-constexpr double kCountable = 1e8;    // lines; more need not be told apart
+constexpr double kCounted = 1e7;      // triangles of a cell; where there are more, their number is told from that of a coarser tolerance
 
 /// Error of a triangle whose edges bend by a, b, c.
 double error_of(const Point& a, const Point& b, const Point& c, Measure measure) {
@@ -248,7 +248,8 @@ DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure meas
 
 double dice_triangles(const Bends& bends, double tolerance, Measure measure) {
     if (!bends.exist()) return 1;
-    return choose(bends, tolerance, measure, kCountable * kCountable).plan.triangles;
+    for (double coarser = 1;; coarser *= 16)
+        if (const double n = choose(bends, coarser * tolerance, measure, kCounted).plan.triangles; n <= kCounted) return n * coarser;
 }
 
 namespace {
@@ -285,7 +286,7 @@ double dice_triangle_triangles(const Bends& bends, double tolerance, Measure mea
     const std::vector<double> errors = triangle_errors(bends, measure);
     const double most = 2 + std::sqrt(*std::max_element(errors.begin(), errors.end()) / (kUse * tolerance));
     double least = std::numeric_limits<double>::infinity();
-    for (double n = 1; n <= most && n <= kCountable; n *= 1.02) least = std::min(least, outcome(errors, n, tolerance));
+    for (double n = 1; n <= most && n < 1e150; n *= 1.02) least = std::min(least, outcome(errors, n, tolerance));
     return 0.6 * least / double(errors.size());  // bends of a triangle are less even: bisection needs 0.67 of what uniform parts would
 }
 

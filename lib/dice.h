@@ -54,7 +54,7 @@ struct DiceGrid {
 /// bisected. An estimate, no proof; a single cell where more than `most` triangles would be needed.
 DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure measure, double most);
 
-/// About how many triangles that grid would end with, whatever their number is: infinite beyond 10^16; 1 where bends do not exist.
+/// About how many triangles that grid would end with, whatever their number is; 1 where bends do not exist.
 double dice_triangles(const Bends& bends, double tolerance, Measure measure);
 
 /// The same for the triangular domain, whose box is the unit square: into how many parts each side is cut.

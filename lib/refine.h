@@ -34,11 +34,12 @@ struct PatchEdge {
     std::uint32_t a = 0, b = 0;       // corners
     std::uint32_t child = kNone;      // children are child (a to middle) and child + 1 (middle to b)
     std::uint32_t rim_node = kNone;
-    std::uint32_t use = 0;            // of the rim
-    bool reversed = false;            // a is at the rim node's b
-    bool marked = false;
+    std::uint32_t use : 30 = 0;       // of the rim
+    bool reversed : 1 = false;        // a is at the rim node's b
+    bool marked : 1 = false;
     std::array<std::uint32_t, 2> side{kNone, kNone};  // the triangles beside it
 };
+static_assert(sizeof(PatchEdge) == 28, "there are three for every two triangles");
 
 struct PatchTriangle {
     std::array<std::uint32_t, 3> corner{};
@@ -130,6 +131,11 @@ public:
     /// Other triangulations of the same patches: all their triangles are fresh, their slack is measured here. The vertices 0 to
     /// nodes of the topology, and all those of rims, have to be where they were, or on their rims.
     void replace(std::vector<PatchMesh> patches, std::vector<RimNode> rim_nodes, std::vector<Point> positions);
+    /// Leaves nothing of a patch but its corners.
+    void drop_triangles(std::size_t member) {
+        PatchMesh& p = patches_[member];
+        p.triangles = {}, p.edges = {}, p.settled = {}, p.fresh = {}, p.slack = {};
+    }
     /// The corners of a patch, which are then no longer here.
     void move_corners(std::size_t member, std::vector<Vec2>& uv, std::vector<std::uint32_t>& vertex) { uv = std::move(patches_[member].uv), vertex = std::move(patches_[member].vertex); }
     /// Mesh edges on rims with one use: where the surface is open.

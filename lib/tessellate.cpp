@@ -61,7 +61,7 @@ void refuse_hopeless(const Composite& surface, const Refinement& refinement, con
     double optimum = 0;
     for (const Member& m : surface) optimum += optimal_triangles(m.patch, options.tolerance);
     if (optimum > kOptimumTooMany * most)
-        throw Error(ErrorKind::budget, "the tolerance " + to_text(options.tolerance) + " was not reached: " + too_many(std::isfinite(planned) ? std::max(planned, optimum) : optimum, options) +
+        throw Error(ErrorKind::budget, "the tolerance " + to_text(options.tolerance) + " was not reached: " + too_many(std::max(planned, optimum), options) +
                                            ". Ask for a larger tolerance or raise the budget (--max-triangles).");
 }
 
@@ -152,12 +152,15 @@ std::vector<Point> number_vertices(std::vector<std::uint32_t>& number, const std
     return kept;
 }
 
-/// Keeps the vertices that a triangle names; number[v] becomes the mesh's number of vertex v, or kNone. The refinement loses its corners unless they are to be kept.
+/// Keeps the vertices that a triangle names; number[v] becomes the mesh's number of vertex v, or kNone. The refinement loses its patches unless they are to be kept.
 Mesh to_mesh(const Composite& surface, const Topology& topology, Refinement& refinement, const TessellationOptions& options, bool keep, std::vector<std::uint32_t>& number) {
     Mesh mesh;
     number.assign(refinement.positions().size(), kNone);
     mesh.parts.resize(surface.size());
-    tbb::parallel_for(std::size_t(0), surface.size(), [&](std::size_t m) { mesh.parts[m] = to_part(surface[m], m, topology.flipped[m], refinement, options.bounds, number); });
+    tbb::parallel_for(std::size_t(0), surface.size(), [&](std::size_t m) {
+        mesh.parts[m] = to_part(surface[m], m, topology.flipped[m], refinement, options.bounds, number);
+        if (!keep) refinement.drop_triangles(m);
+    });
     mesh.positions = number_vertices(number, refinement.positions());
     tbb::parallel_for(std::size_t(0), surface.size(), [&](std::size_t m) {
         MeshPart& part = mesh.parts[m];
