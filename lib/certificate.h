@@ -61,6 +61,9 @@ Certificate make_certificate(const Composite& surface, const Tessellation& tesse
 /// The largest distance of a point of the mesh from the surface's point for it, at samples.
 double sampled_distance(const Composite& surface, const Certificate& certificate);
 
+/// Triangles with two corners in one place are no part of a mesh: each has to be an edge, or a vertex, of others that are. Empty when so.
+std::string lost_fault(const Certificate& all);
+
 struct CertificateCheck {
     struct Failure {
         std::size_t patch = 0, triangle = 0;  // from 0, in the order of the certificate

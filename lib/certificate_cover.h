@@ -46,7 +46,4 @@ private:
     std::vector<Side> sides_;
 };
 
-/// Triangles with two corners in one place are no part of a mesh: each has to be an edge, or a vertex, of others that are. Empty when so.
-std::string lost_fault(const Certificate& all);
-
 }  // namespace isoparm

@@ -13,6 +13,7 @@ constexpr double kFew = 1.05, kMany = 0.75;  // of the vertices wanted on a line
 constexpr double kPeak = 64;          // times the median of all samples
 constexpr double kStep = 1.19;        // between the numbers of lines that are tried
 constexpr int kInVain = 2;            // steps that do not help end the search
+constexpr double kCounted = 1e7;      // triangles of a cell; where there are more, their number is told from that of a coarser tolerance
 
 /// Error of a triangle whose edges bend by a, b, c.
 double error_of(const Point& a, const Point& b, const Point& c, Measure measure) {
@@ -190,11 +191,18 @@ double DiceGrid::triangles() const {
     return sum;
 }
 
-DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure measure, double most) {
-    if (!bends.exist()) return DiceGrid::single(box);
-    Plan best;
-    std::vector<double> best_density;
-    bool best_columns = false;
+namespace {
+
+/// The lines that need the fewest triangles.
+struct Choice {
+    Plan plan;
+    std::vector<double> density;  // of the lines
+    bool columns = false;
+};
+
+/// Of infinitely many triangles where there are clearly more than `most`.
+Choice choose(const Bends& bends, double tolerance, Measure measure, double most) {
+    Choice best;
     for (const bool columns : {false, true}) {
         const Oriented turned{bends, columns};
         const auto dv = densities([&](int j, int k) { return length(turned(k, j).vv); });
@@ -203,11 +211,11 @@ DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure meas
         for (int i = 0; i < kSamples; ++i)
             for (int j = 0; j < kSamples; ++j) squares += dot(bends(i, j).uu, bends(i, j).uu) * columns + dot(bends(i, j).vv, bends(i, j).vv) * !columns;
         const double usual = std::sqrt(std::sqrt(squares) / kSamples / (6 * tolerance));
-        if (!(usual * usual <= most)) return DiceGrid::single(box);
+        if (!(usual * usual <= most)) return {};
         const auto better = [&](double n) {
-            const Plan p = plan(turned, dv, int(n), tolerance, measure, best.triangles);
-            const bool found = p.triangles < best.triangles * (1 - 1e-9);
-            if (found) best = p, best_density = dv, best_columns = columns;
+            const Plan p = plan(turned, dv, int(n), tolerance, measure, best.plan.triangles);
+            const bool found = p.triangles < best.plan.triangles * (1 - 1e-9);
+            if (found) best = {p, dv, columns};
             return found;
         };
         // From there to more of them, or to fewer, as long as that helps; a second step may help where the first does not, as numbers are whole.
@@ -222,24 +230,64 @@ DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure meas
             }
         }
     }
-    if (!(best.triangles <= most)) return DiceGrid::single(box);
-    return grid_of(best, best_density, best_columns, box);
+    return best;
 }
 
-int dice_triangle(const Bends& bends, double tolerance, Measure measure, double most) {
+}  // namespace
+
+DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure measure, double most) {
+    if (!bends.exist()) return DiceGrid::single(box);
+    const Choice best = choose(bends, tolerance, measure, most);
+    if (!(best.plan.triangles <= most)) {
+        DiceGrid none = DiceGrid::single(box);
+        none.too_many = true;
+        return none;
+    }
+    return grid_of(best.plan, best.density, best.columns, box);
+}
+
+double dice_triangles(const Bends& bends, double tolerance, Measure measure) {
     if (!bends.exist()) return 1;
+    for (double coarser = 1;; coarser *= 16)
+        if (const double n = choose(bends, coarser * tolerance, measure, kCounted).plan.triangles; n <= kCounted) return n * coarser;
+}
+
+namespace {
+
+/// About how many triangles n parts of each side end with.
+double outcome(const std::vector<double>& errors, double n, double tolerance) {
+    double cost = 0;
+    for (const double e : errors) cost += n * n * outcome(e / (n * n), tolerance);
+    return cost;
+}
+
+std::vector<double> triangle_errors(const Bends& bends, Measure measure) {
     std::vector<double> errors;
     for (int i = 0; i < kSamples; ++i)
         for (int j = 0; j < kSamples; ++j) errors.push_back(error_of(bends(i, j).uu, bends(i, j).vv, bends(i, j).uu + bends(i, j).vv - 2.0 * bends(i, j).uv, measure));
+    return errors;
+}
+
+}  // namespace
+
+int dice_triangle(const Bends& bends, double tolerance, Measure measure, double most) {
+    if (!bends.exist()) return 1;
+    const std::vector<double> errors = triangle_errors(bends, measure);
     const double worst = *std::max_element(errors.begin(), errors.end());
     int best = 1;
     double least = std::numeric_limits<double>::infinity();
-    for (int n = 1; double(n) * n <= most && n <= 2 + std::sqrt(worst / (kUse * tolerance)); ++n) {
-        double cost = 0;
-        for (const double e : errors) cost += double(n) * n * outcome(e / (double(n) * n), tolerance);
-        if (cost < least) best = n, least = cost;
-    }
+    for (int n = 1; double(n) * n <= most && n <= 2 + std::sqrt(worst / (kUse * tolerance)); ++n)
+        if (const double cost = outcome(errors, n, tolerance); cost < least) best = n, least = cost;
     return best;
+}
+
+double dice_triangle_triangles(const Bends& bends, double tolerance, Measure measure) {
+    if (!bends.exist()) return 1;
+    const std::vector<double> errors = triangle_errors(bends, measure);
+    const double most = 2 + std::sqrt(*std::max_element(errors.begin(), errors.end()) / (kUse * tolerance));
+    double least = std::numeric_limits<double>::infinity();
+    for (double n = 1; n <= most && n < 1e150; n *= 1.02) least = std::min(least, outcome(errors, n, tolerance));
+    return 0.6 * least / double(errors.size());  // bends of a triangle are less even: bisection needs 0.67 of what uniform parts would
 }
 
 }  // namespace isoparm

@@ -41,6 +41,7 @@ struct DiceGrid {
     bool columns = false;                   // lines are u = const, and rows run along v; else the other way round
     std::vector<double> lines;              // the box's ends included
     std::vector<std::vector<double>> rows;  // positions on each line, the box's ends included
+    bool too_many = false;                  // a single cell because of that
 
     static DiceGrid single(const Box& box);
     double triangles() const;
@@ -53,7 +54,12 @@ struct DiceGrid {
 /// bisected. An estimate, no proof; a single cell where more than `most` triangles would be needed.
 DiceGrid dice(const Bends& bends, const Box& box, double tolerance, Measure measure, double most);
 
+/// About how many triangles that grid would end with, whatever their number is; 1 where bends do not exist.
+double dice_triangles(const Bends& bends, double tolerance, Measure measure);
+
 /// The same for the triangular domain, whose box is the unit square: into how many parts each side is cut.
 int dice_triangle(const Bends& bends, double tolerance, Measure measure, double most);
+/// About how many triangles that would end with, whatever their number is.
+double dice_triangle_triangles(const Bends& bends, double tolerance, Measure measure);
 
 }  // namespace isoparm

@@ -120,39 +120,49 @@ bool Refinement::bound_and_mark() {
     for_all(patches_.size(), [&](std::size_t m) { return (patches_[m].fresh.size() + kTogether - 1) / kTogether; }, [&](std::size_t m, std::size_t i) {
         bound_fresh(patches_[m], std::uint32_t(m), i * kTogether, std::min((i + 1) * kTogether, patches_[m].fresh.size()));
     }, 1);
-    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
-        PatchMesh& mesh = patches_[m];
-        for (const auto i : mesh.fresh) {
-            const PatchTriangle& t = mesh.triangles[i];
-            if (!(t.proof.own(measure_) + mesh.slack_of(t) <= tolerance_)) flip_any(mesh, std::uint32_t(m), i, false);
-        }
-    });
-    bool done = true;
+    std::vector<Round> rounds(patches_.size());
+    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) { rounds[m] = flip_and_mark(std::uint32_t(m)); });
     predicted_ = double(triangle_count());
     worst_bound_ = 0, unbounded_ = 0;
-    for (auto& mesh : patches_) {
-        const auto mark_to_split = [&](std::uint32_t e) {
-            mark(mesh, e);
-            done = false;
-        };
-        for (const auto i : mesh.fresh) {
-            const PatchTriangle& t = mesh.triangles[i];
-            const double bound = rounding::up(t.proof.own(measure_) + mesh.slack_of(t));
-            if (!(bound <= tolerance_)) {
-                mark_to_split(t.edge[t.proof.worst_edge]);
-                unbounded_ += !std::isfinite(bound);
-                predicted_ += std::isfinite(bound) ? bound / tolerance_ - 1 : 0;
-                worst_bound_ = std::max(worst_bound_, bound);
-            } else if (!turns_little(mesh, t)) {
-                mark_to_split(t.edge[t.proof.worst_turn]);
-                predicted_ += std::isfinite(t.proof.turn) ? t.proof.turn / turn_ - 1 : 0;
-            }
-            for (auto e : t.edge)
-                if (mesh.vertex[mesh.edges[e].a] == mesh.vertex[mesh.edges[e].b] && !collapsed(mesh.edges[e])) mark_to_split(e);
-        }
-        mesh.fresh.clear();
+    bool done = true;
+    for (std::size_t m = 0; m < patches_.size(); ++m) {
+        const Round& r = rounds[m];
+        predicted_ += r.more, worst_bound_ = std::max(worst_bound_, r.worst), unbounded_ += r.unbounded;
+        for (const auto e : r.on_rims) mark(patches_[m], e);
+        done = done && r.on_rims.empty() && patches_[m].marked.empty();
     }
     return done;
+}
+
+/// Turns edges of fresh triangles of a patch, and marks its inner edges. Touches nothing of other patches.
+Refinement::Round Refinement::flip_and_mark(std::uint32_t member) {
+    PatchMesh& mesh = patches_[member];
+    for (const auto i : mesh.fresh) {
+        const PatchTriangle& t = mesh.triangles[i];
+        if (!(t.proof.own(measure_) + mesh.slack_of(t) <= tolerance_)) flip_any(mesh, member, i, false);
+    }
+    Round r;
+    const auto mark_to_split = [&](std::uint32_t e) {
+        if (mesh.edges[e].rim_node != kNone) r.on_rims.push_back(e);
+        else mark(mesh, e);
+    };
+    for (const auto i : mesh.fresh) {
+        const PatchTriangle& t = mesh.triangles[i];
+        const double bound = rounding::up(t.proof.own(measure_) + mesh.slack_of(t));
+        if (!(bound <= tolerance_)) {
+            mark_to_split(t.edge[t.proof.worst_edge]);
+            r.unbounded += !std::isfinite(bound);
+            r.more += std::isfinite(bound) ? bound / tolerance_ - 1 : 0;
+            r.worst = std::max(r.worst, bound);
+        } else if (!turns_little(mesh, t)) {
+            mark_to_split(t.edge[t.proof.worst_turn]);
+            r.more += std::isfinite(t.proof.turn) ? t.proof.turn / turn_ - 1 : 0;
+        }
+        for (auto e : t.edge)
+            if (mesh.vertex[mesh.edges[e].a] == mesh.vertex[mesh.edges[e].b] && !collapsed(mesh.edges[e])) mark_to_split(e);
+    }
+    mesh.fresh.clear();
+    return r;
 }
 
 bool Refinement::turns_little(const PatchMesh& mesh, const PatchTriangle& t) const {

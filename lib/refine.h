@@ -35,11 +35,12 @@ struct PatchEdge {
     std::uint32_t a = 0, b = 0;       // corners
     std::uint32_t child = kNone;      // children are child (a to middle) and child + 1 (middle to b)
     std::uint32_t rim_node = kNone;
-    std::uint32_t use = 0;            // of the rim
-    bool reversed = false;            // a is at the rim node's b
-    bool marked = false;
+    std::uint32_t use : 30 = 0;       // of the rim
+    bool reversed : 1 = false;        // a is at the rim node's b
+    bool marked : 1 = false;
     std::array<std::uint32_t, 2> side{kNone, kNone};  // the triangles beside it
 };
+static_assert(sizeof(PatchEdge) == 28, "there are three for every two triangles");
 
 struct PatchTriangle {
     std::array<std::uint32_t, 3> corner{};
@@ -98,6 +99,9 @@ public:
     /// mark when a whole patch is one vertex that no triangle has.
     bool mark_lost_edges();
 
+    /// About how many triangles the grids to begin with would have ended with, where those had more than `most`; else 0.
+    double planned_triangles() const { return planned_; }
+
     std::size_t triangle_count() const;
     /// What the last bound_and_mark() found: about how many triangles the tolerance needs, the largest bound above it, and
     /// over how many triangles nothing could be proved.
@@ -128,6 +132,13 @@ public:
     /// Other triangulations of the same patches: all their triangles are fresh, their slack is measured here. The vertices 0 to
     /// nodes of the topology, and all those of rims, have to be where they were, or on their rims.
     void replace(std::vector<PatchMesh> patches, std::vector<RimNode> rim_nodes, std::vector<Point> positions);
+    /// Leaves nothing of a patch but its corners.
+    void drop_triangles(std::size_t member) {
+        PatchMesh& p = patches_[member];
+        p.triangles = {}, p.edges = {}, p.settled = {}, p.fresh = {}, p.slack = {};
+    }
+    /// The corners of a patch, which are then no longer here.
+    void move_corners(std::size_t member, std::vector<Vec2>& uv, std::vector<std::uint32_t>& vertex) { uv = std::move(patches_[member].uv), vertex = std::move(patches_[member].vertex); }
     /// Mesh edges on rims with one use: where the surface is open.
     std::vector<std::array<std::uint32_t, 2>> open_edges() const;
     bool collapsed(const PatchEdge& e) const { return e.rim_node != kNone && topology_.rims[rim_nodes_[e.rim_node].rim].collapsed; }
@@ -150,6 +161,12 @@ private:
     void bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const;
     const BoundCell* sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const;
     void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
+    struct Round {  // what a patch asks for
+        std::vector<std::uint32_t> on_rims;  // edges to be marked
+        double more = 0, worst = 0;          // triangles that will come of those above the tolerance; their largest bound
+        std::size_t unbounded = 0;
+    };
+    Round flip_and_mark(std::uint32_t member);
     bool may_lose(const PatchMesh& mesh) const;
     bool keeps(const PatchMesh& mesh, const PatchTriangle& t) const;
     struct Flip;
@@ -170,7 +187,7 @@ private:
     std::vector<std::uint32_t> rim_pieces_;    // rim r begins as the nodes [rim_pieces_[r], rim_pieces_[r + 1])
     std::vector<std::uint32_t> marked_rims_;
     std::vector<PatchMesh> patches_;
-    double worst_slack_ = 0, predicted_ = 0, worst_bound_ = 0;
+    double worst_slack_ = 0, predicted_ = 0, planned_ = 0, worst_bound_ = 0;
     std::size_t unbounded_ = 0;
 };
 

@@ -51,7 +51,8 @@ double Refinement::sampled_error() const {
             const std::vector<Point> exact = samples.on(patch);
             for (std::size_t i = 0; i < exact.size(); ++i) {
                 const PatchTriangle& t = mesh.triangles[samples.of[i]];
-                most = std::max(most, geometric ? to_triangle(exact[i], t) : distance(exact[i], (at(t.corner[0]) + at(t.corner[1]) + at(t.corner[2])) / 3.0));
+                const double apart = distance(exact[i], (at(t.corner[0]) + at(t.corner[1]) + at(t.corner[2])) / 3.0);
+                if (apart > most) most = std::max(most, geometric ? to_triangle(exact[i], t) : apart);  // the nearest point is not farther
             }
             return most;
         }));
@@ -69,7 +70,7 @@ double Refinement::sampled_error() const {
                 double least = distance(exact[i], 0.5 * at(e.a) + 0.5 * at(e.b));
                 if (geometric)
                     for (const auto t : e.side)
-                        if (t != kNone && !mesh.left_out(mesh.triangles[t])) least = std::min(least, to_triangle(exact[i], mesh.triangles[t]));
+                        if (least > most && t != kNone && !mesh.left_out(mesh.triangles[t])) least = std::min(least, to_triangle(exact[i], mesh.triangles[t]));
                 most = std::max(most, least);
             }
             return most;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "patch_builder.h"
 
@@ -16,6 +17,14 @@ struct Refinement::Start {
     std::vector<DiceGrid> grids;
     int parts = 1;
     double triangles = 0;
+    bool too_many = false;  // a cell had more by itself
+
+    /// About how many triangles are needed, whatever their number is.
+    double needed(const Patch& patch, double tolerance, Measure measure) const {
+        double sum = 0;
+        for (const Bends& b : bends) sum += patch.domain() == Domain::triangle ? dice_triangle_triangles(b, tolerance, measure) : dice_triangles(b, tolerance, measure);
+        return sum;
+    }
 
     Start() = default;
     /// Single cells when `most` is 0.
@@ -27,9 +36,11 @@ struct Refinement::Start {
                 if (patch.domain() == Domain::triangle) {
                     parts = most > 0 ? dice_triangle(bends.back(), tolerance, measure, most) : 1;
                     triangles += double(parts) * parts;
+                    too_many = most > 0 && dice_triangle_triangles(bends.back(), tolerance, measure) > most;
                 } else {
                     grids.push_back(most > 0 ? dice(bends.back(), box, tolerance, measure, most) : DiceGrid::single(box));
                     triangles += grids.back().triangles();
+                    too_many |= grids.back().too_many;
                 }
             }
     }
@@ -61,7 +72,13 @@ void Refinement::start(double most) {
         for (const Start& s : starts) triangles += s.triangles;
         return triangles;
     };
-    if (!(make(most) <= most)) make(0);
+    const bool fits = make(most) <= most;
+    if (!fits || std::any_of(starts.begin(), starts.end(), [](const Start& s) { return s.too_many; })) {
+        std::vector<double> needed(starts.size());
+        tbb::parallel_for(std::size_t(0), starts.size(), [&](std::size_t m) { needed[m] = starts[m].needed(surface_[m].patch, tolerance_, measure_); });
+        planned_ = std::accumulate(needed.begin(), needed.end(), 0.0);
+    }
+    if (!fits) make(0);
     cut_rims(starts);
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) { build_patch(std::uint32_t(m), starts[m]); });
     number_vertices(std::vector<std::size_t>(patches_.size(), 0), std::vector<std::uint32_t>(patches_.size(), 0));

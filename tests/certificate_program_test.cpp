@@ -61,5 +61,14 @@ TEST(CertificateProgram, SurfaceAndParametersAreTheCertificatesOwn) {
     expect("tessellate " + scene("teapot") + " -o " + t / "m.ply --certificate " + t / "m.ply", 64, "too, expected another one");
 }
 
+TEST(CertificateProgram, SurfacesWithoutAreaAreToldAndNothingIsWritten) {
+    const TemporaryFolder t;
+    write_all(t / "s.json", R"({"isoparm": 1, "curves": {}, "surfaces": {"S": {"type": "bezier_triangle", "degree": 1,
+        "points": [[[0, 2, 0], [0, 2, 0]], [[0, 3, 1]]]}}, "objects": [{"surface": "S"}]})");
+    expect("tessellate " + t / "s.json" + " --tolerance 0.1 -o " + t / "m.ply --certificate " + t / "c.json", 2, "has triangles without area only");
+    EXPECT_TRUE(read_all(t / "c.json").empty() && read_all(t / "m.ply").empty());
+    expect("tessellate " + t / "s.json" + " --tolerance 0.1 -o " + t / "m.ply", 0, "certified error");
+}
+
 }  // namespace
 }  // namespace isoparm::test

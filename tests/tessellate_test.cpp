@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 
@@ -365,6 +366,34 @@ TEST(Tessellate, BudgetEndsWithWhatWasReachedAndWhatIsNeeded) {
     }
     options.tolerance = 0;
     EXPECT_THROW(tessellate(sphere(), options), Error);
+}
+
+TEST(Tessellate, BudgetRefusesAtOnceWhatIsClearlyTooMuchAndNothingThatFits) {
+    std::vector<std::vector<Point>> net(4, std::vector<Point>(4));
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j) net[i][j] = {i / 3.0, j / 3.0, 0.3 * i * i - 0.2 * j * j + 0.03 * i * j * j};
+    const Composite surface{{"bicubic", make_bezier_patch(net)}};
+    const auto bicubic = [&](Measure measure, double tolerance, std::size_t most) {
+        TessellationOptions options;
+        options.tolerance = tolerance, options.measure = measure, options.max_triangles = most, options.study = false;
+        return tessellate(surface, options).mesh.triangle_count();
+    };
+    for (const Measure measure : {Measure::geometric, Measure::parametric}) {
+        const std::size_t needed = bicubic(measure, 1e-3, 1'000'000);
+        for (const double share : {1.0, 1.1, 1.5}) EXPECT_LE(bicubic(measure, 1e-3, std::size_t(share * double(needed))), std::size_t(share * double(needed)));
+        const auto begin = std::chrono::steady_clock::now();
+        try {
+            bicubic(measure, 1e-10, 10'000'000);
+            FAIL() << "1e-3 takes " << needed << " triangles, 1e-10 ten million times as many";
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), ErrorKind::budget);
+            const std::string text = e.what();
+            const double told = std::stod(text.substr(text.find("about ") + 6)), likely = 1e7 * double(needed);
+            EXPECT_TRUE(told > 0.5 * likely && told < 2 * likely) << text << " where " << likely << " are likely";
+            EXPECT_EQ(text.find("certified error"), std::string::npos) << "it was tried: " << text;
+        }
+        EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5);
+    }
 }
 
 }  // namespace

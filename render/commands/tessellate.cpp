@@ -112,6 +112,8 @@ void round_positions(Tessellation& t, double moved) {
 CertificateFile certificate_of(const Scene& scene, const Selection& selection, const Options& options, const Tessellation& t, const std::string& measure) {
     CertificateFile file{std::filesystem::path(scene.path).filename().string(), sha256(read_text_file(scene.path)), options.value("--surface"), scene.parameters, measure, {}};
     file.certificate = make_certificate(selection.patches, t, measure == "geometric");
+    if (const std::string lost = lost_fault(file.certificate); !lost.empty())
+        throw Error(ErrorKind::budget, scene.path + ": " + lost + "; certificates tell of triangles with area only, so nothing was written; leave out --certificate, or that part of the surface");
     const CertificateCheck check = check_certificate(selection.patches, file.certificate);
     if (!check.faults.empty()) throw std::logic_error("a certificate that is none, " + check.faults.front() + ": please report this scene");
     if (!check.failures.empty()) {
