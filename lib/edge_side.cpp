@@ -2,17 +2,13 @@
 
 #include <algorithm>
 
+#include "edge_cells.h"
+
 namespace isoparm {
 namespace {
 
 using Jet2 = JetUV<TaylorModel, 2>;
-
-/// The cell of x between lines; on a line, the one that `side` points into.
-std::size_t cell_beside(const std::vector<double>& lines, double x, double side) {
-    std::size_t i = 0;
-    while (i + 2 < lines.size() && (lines[i + 1] < x || (lines[i + 1] == x && side > 0))) ++i;
-    return i;
-}
+constexpr int kMostDegree = TaylorModel::order;
 
 Jet2 variable(const Interval& from, const Interval& step, double cross, const TaylorModel& s) {
     Jet2 x;
@@ -33,6 +29,22 @@ Jet2 evaluate(const Polynomial& p, const Jet2& x, const Jet2& y) {
         sum = i < p.degree_u() ? sum * x + row : row;
     }
     return sum;
+}
+
+/// Taylor coefficients about (x,y) of a polynomial; row i of u has those of v.
+std::vector<std::vector<Interval>> recentred(const Polynomial& f, const Interval& x, const Interval& y) {
+    const int p = f.degree_u(), q = f.degree_v();
+    std::vector<std::vector<Interval>> c(std::size_t(p) + 1, std::vector<Interval>(std::size_t(q) + 1));
+    for (int i = 0; i <= p; ++i)
+        for (int j = 0; j <= q; ++j) c[std::size_t(i)][std::size_t(j)] = f.coefficient(i, j);
+    const auto zero = [](const Interval& t) { return t.lo == 0 && t.hi == 0; };
+    for (int k = 0; k < p && !zero(x); ++k)  // repeated synthetic division
+        for (int i = p - 1; i >= k; --i)
+            for (int j = 0; j <= q; ++j) c[std::size_t(i)][std::size_t(j)] += c[std::size_t(i + 1)][std::size_t(j)] * x;
+    for (auto& row : c)
+        for (int k = 0; k < q && !zero(y); ++k)
+            for (int j = q - 1; j >= k; --j) row[std::size_t(j)] += row[std::size_t(j + 1)] * y;
+    return c;
 }
 
 Interval step_of(double from, double to) { return Interval(to) - Interval(from); }
@@ -114,12 +126,10 @@ ParameterLine edge_line(const Patch& patch, int edge, double t0, double t1) {
 }
 
 EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : patch_(std::move(patch)), line_(line) {
-    const auto u = patch_.lines_u(), v = patch_.lines_v();
-    const std::size_t i = cell_beside(u, 0.5 * line.from.x + 0.5 * line.to.x, side.x), j = cell_beside(v, 0.5 * line.from.y + 0.5 * line.to.y, side.y);
-    cell_ = {u[i], u[i + 1], v[j], v[j + 1]};
-    exact_ = patch_.exact_cell(i, j);
+    const CellForm cell = form_beside(patch_, line.from, line.to, side);
+    cell_ = cell.cell, exact_ = cell.form;
     if (exact_.empty()) return;
-    whole_ = form_at(TaylorModel::linear(0.5, 0.5));
+    whole_ = along_all();
     for (const Jet2& x : whole_)
         for (const TaylorModel& c : x.c)
             if (!c.exact()) {
@@ -127,6 +137,45 @@ EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : p
                 return;
             }
     find_directions();
+}
+
+// With (x,y) = middle + d step + b cross: the powers of b to the second are polynomials in d = 2 s - 1, whose derivatives are those by s, halved.
+std::vector<Jet2> EdgeSide::along_all() const {
+    const auto middle = [](double from, double to, double u0, double u1) {
+        return Interval(0.5) * (Interval(from) + Interval(to)) - Interval(mid(Interval(u0, u1)));
+    };
+    const Interval x = middle(line_.from.x, line_.to.x, cell_.u0, cell_.u1), y = middle(line_.from.y, line_.to.y, cell_.v0, cell_.v1);
+    const Interval step[] = {Interval(0.5) * step_of(line_.from.x, line_.to.x), Interval(0.5) * step_of(line_.from.y, line_.to.y)};
+    const Interval across[] = {Interval(line_.cross.x), Interval(line_.cross.y)};
+    std::vector<Jet2> form;
+    for (const Polynomial& f : exact_) {
+        if (f.degree_u() + f.degree_v() > kMostDegree) return form_at(TaylorModel::linear(0.5, 0.5));
+        const auto c = recentred(f, x, y);
+        std::array<std::array<Interval, kMostDegree + 3>, 3> powers{};  // [l][k]: of b^l d^k
+        for (int i = 0; i <= f.degree_u(); ++i)
+            for (int j = 0; j <= f.degree_v(); ++j)
+                for (int l = 0; l <= std::min(2, i + j); ++l) {
+                    Interval weight(0);
+                    for (int m = std::max(0, l - j); m <= std::min(i, l); ++m)
+                        weight += Interval(binomial(i, m) * binomial(j, l - m)) * power(across[0], m) * power(step[0], i - m) * power(across[1], l - m) * power(step[1], j - l + m);
+                    powers[std::size_t(l)][std::size_t(i + j - l)] += weight * c[std::size_t(i)][std::size_t(j)];
+                }
+        const auto derivative = [](const auto& of) {  // by s
+            auto d = of;
+            for (std::size_t k = 0; k + 1 < of.size(); ++k) d[k] = of[k + 1] * Interval(2.0 * double(k + 1));
+            d.back() = Interval(0);
+            return d;
+        };
+        const auto model = [](const auto& of) { return TaylorModel::polynomial(of.data(), kMostDegree); };
+        const auto first = derivative(powers[0]);
+        Jet2 jet;
+        jet.c[0] = model(powers[0]), jet.c[1] = model(first), jet.c[2] = model(powers[1]), jet.c[4] = model(derivative(powers[1])), jet.c[5] = model(powers[2]);
+        auto second = derivative(first);
+        for (Interval& k : second) k = k * Interval(0.5);
+        jet.c[3] = model(second);
+        form.push_back(jet);
+    }
+    return form;
 }
 
 // Of a rational surface X/w the derivatives have the directions of X' w - X w', which are polynomials.

@@ -40,6 +40,7 @@ public:
     Jet jet(const TaylorModel& s) const;
 
 private:
+    std::vector<JetUV<TaylorModel, 2>> along_all() const;
     Jet of_form(const std::vector<JetUV<TaylorModel, 2>>& form) const;
     std::vector<JetUV<TaylorModel, 2>> form_at(const TaylorModel& s) const;
     Jet enclosed(const TaylorModel& s) const;
