@@ -45,6 +45,12 @@ Apart apart(const Composite& surface, const Side& a, const Side& b) {
     return d;
 }
 
+/// Places of T-joints were found as the nearest to a vertex, up to rounding. Most are halves, quarters ...: there the two patches have common parts, on which both are exact.
+double snapped(double t) {
+    const double dyadic = std::round(t * 0x1p10) * 0x1p-10;
+    return std::fabs(t - dyadic) <= 1e-13 ? dyadic : t;
+}
+
 bool whole(const Side& s) { return std::min(s.t0, s.t1) <= kSnap && std::max(s.t0, s.t1) >= 1 - kSnap; }
 
 /// One joint of all rims that two edges share in one direction.
@@ -60,7 +66,8 @@ std::vector<FoundJoint> joints_of(const Composite& surface, const Topology& topo
     std::vector<FoundJoint> found;
     for (auto& [key, rims] : groups) {
         std::sort(rims.begin(), rims.end(), [](const auto& x, const auto& y) { return x.first.t0 < y.first.t0; });
-        for (const auto& [a, b] : rims) {
+        for (auto [a, b] : rims) {
+            for (double* t : {&a.t0, &a.t1, &b.t0, &b.t1}) *t = snapped(*t);
             const Side sa{a.member, a.edge, a.t0, a.t1, 0}, sb{b.member, b.edge, b.t0, b.t1, 0};
             const Apart d = apart(surface, sa, sb);
             const bool affine = !(d.in_step > 1e-12 * size && d.nearest < 0.1 * d.in_step);

@@ -88,6 +88,10 @@ private:
 
     Sizes measure(std::size_t k, double middle, double half) const {
         const EdgeSegment& e = segments_[k];
+        if (e.singular && !(e.a.exact() && e.b.exact())) {
+            const Vec3<Interval> apart = e.a.positions(middle, half) - e.b.positions(middle, half);
+            return {length_of({apart.x, apart.y, apart.z}), kUnknown, kUnknown, kUnknown, kUnknown};
+        }
         const EdgeSide::Jet x = e.a.jet(middle, half);
         if (e.curve) {
             Sizes s;
@@ -164,9 +168,11 @@ private:
             const JumpBound& b = bounds_[m];
             const bool enough = b.inside <= 0.01 * limits_.tolerance[m] || (b.inside < kInfinite && b.inside - b.lower <= limits_.relative * b.inside) || (b.inside <= limits_.tolerance[m] && halved_[m] >= kFew);
             const double rounding = pieces_[worst_[m]].middle_upper[m], tolerance = limits_.tolerance[m];
-            const bool hopeless = b.lower <= tolerance && b.inside <= 1.5 * rounding && (b.inside <= tolerance || rounding > tolerance);
+            const bool hopeless = b.lower <= tolerance && b.inside <= 3 * rounding && (b.inside <= tolerance || rounding > tolerance);
+            // Around an extraordinary vertex the surface is known by a box: shorter pieces have the same.
+            const bool box = b.inside <= tolerance && segments_[pieces_[worst_[m]].segment].singular;
             const double shortest = b.inside < kInfinite ? kShortest : kTip;
-            if (!enough && !hopeless && pieces_[worst_[m]].half > shortest / 2 && halved_[m] < limits_.max_halvings && !stalled(m)) return m;
+            if (!enough && !hopeless && !box && pieces_[worst_[m]].half > shortest / 2 && halved_[m] < limits_.max_halvings && !stalled(m)) return m;
             settled_[m] = true, wanted_[m] = false;
         }
         return kMeasures;

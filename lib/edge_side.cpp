@@ -228,21 +228,26 @@ std::vector<Jet2> EdgeSide::form_at(const TaylorModel& s) const {
     return form;
 }
 
+Box EdgeSide::box(const Interval& s) const {
+    // On the far side of the cell the patch would answer with the next one: the box reaches a little into this one.
+    const auto inside = [](Interval x, double low, double high) {
+        x = clip(x, {low, high});
+        return x.lo == high ? Interval(std::nextafter(high, low), high) : x;
+    };
+    return {inside(Interval(line_.from.x) + step_of(line_.from.x, line_.to.x) * s, cell_.u0, cell_.u1),
+            inside(Interval(line_.from.y) + step_of(line_.from.y, line_.to.y) * s, cell_.v0, cell_.v1)};
+}
+Vec3<Interval> EdgeSide::positions(double middle, double half) const {
+    return patch_.enclose_points(box(Interval(middle) + Interval(-half, half)));
+}
+
 EdgeSide::Jet EdgeSide::enclosed(const TaylorModel& s) const {
     const double centre = mid(s.coefficient(0));
     const Interval reach = s.range();
     const TaylorModel D = s - TaylorModel(centre);
     const Interval along[] = {step_of(line_.from.x, line_.to.x), step_of(line_.from.y, line_.to.y)};
     const double across[] = {line_.cross.x, line_.cross.y};
-    const auto place = [&](const Interval& t) {
-        // On the far side of the cell the patch would answer with the next one: the box reaches a little into this one.
-        const auto inside = [](Interval x, double low, double high) {
-            x = clip(x, {low, high});
-            return x.lo == high ? Interval(std::nextafter(high, low), high) : x;
-        };
-        return Box{inside(Interval(line_.from.x) + along[0] * t, cell_.u0, cell_.u1), inside(Interval(line_.from.y) + along[1] * t, cell_.v0, cell_.v1)};
-    };
-    const auto at = patch_.enclose(place(Interval(centre))).over, over = patch_.enclose(place(reach)).over;
+    const auto at = patch_.enclose(box(Interval(centre))).over, over = patch_.enclose(box(reach)).over;
     const Directional directional(along, across);
     Jet r;
     for (int axis = 0; axis < 3; ++axis) {
