@@ -53,6 +53,14 @@ CellForm form_beside(const Patch& patch, const Vec2& from, const Vec2& to, const
     const Vec2 middle{0.5 * from.x + 0.5 * to.x, 0.5 * from.y + 0.5 * to.y};
     const std::size_t i = cell_beside(u, middle.x, side.x), j = cell_beside(v, middle.y, side.y);
     CellForm found{{u[i], u[i + 1], v[j], v[j + 1]}, patch.exact_cell(i, j)};
+    if (!has_dyadic_parts(found.form)) return found;
+    // Most lines are a side of a part.
+    const double size = std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y));
+    if (const int level = size > 0x1p-60 ? -std::ilogb(size) : 0; level > 1) {
+        const Part part = part_at(middle, level);
+        CellForm direct{part.rect(), part.form(patch)};
+        if (direct.form.size() >= 3 && holds(part.rect(), from) && holds(part.rect(), to)) return direct;
+    }
     for (int level = 1; has_dyadic_parts(found.form); ++level) {
         const Part part = part_at(middle, level);
         if (!holds(part.rect(), from) || !holds(part.rect(), to)) return {patch.rect(), {}};

@@ -31,19 +31,19 @@ Jet2 evaluate(const Polynomial& p, const Jet2& x, const Jet2& y) {
     return sum;
 }
 
-/// Taylor coefficients about (x,y) of a polynomial; row i of u has those of v.
-std::vector<std::vector<Interval>> recentred(const Polynomial& f, const Interval& x, const Interval& y) {
-    const int p = f.degree_u(), q = f.degree_v();
-    std::vector<std::vector<Interval>> c(std::size_t(p) + 1, std::vector<Interval>(std::size_t(q) + 1));
+/// Taylor coefficients about (x,y) of a polynomial, those of u^i v^j at i (degree of v + 1) + j.
+std::vector<Interval> recentred(const Polynomial& f, const Interval& x, const Interval& y) {
+    const int p = f.degree_u(), q = f.degree_v(), row = q + 1;
+    std::vector<Interval> c(std::size_t((p + 1) * row));
     for (int i = 0; i <= p; ++i)
-        for (int j = 0; j <= q; ++j) c[std::size_t(i)][std::size_t(j)] = f.coefficient(i, j);
+        for (int j = 0; j <= q; ++j) c[std::size_t(i * row + j)] = f.coefficient(i, j);
     const auto zero = [](const Interval& t) { return t.lo == 0 && t.hi == 0; };
     for (int k = 0; k < p && !zero(x); ++k)  // repeated synthetic division
         for (int i = p - 1; i >= k; --i)
-            for (int j = 0; j <= q; ++j) c[std::size_t(i)][std::size_t(j)] += c[std::size_t(i + 1)][std::size_t(j)] * x;
-    for (auto& row : c)
+            for (int j = 0; j <= q; ++j) c[std::size_t(i * row + j)] += c[std::size_t((i + 1) * row + j)] * x;
+    for (int i = 0; i <= p; ++i)
         for (int k = 0; k < q && !zero(y); ++k)
-            for (int j = q - 1; j >= k; --j) row[std::size_t(j)] += row[std::size_t(j + 1)] * y;
+            for (int j = q - 1; j >= k; --j) c[std::size_t(i * row + j)] += c[std::size_t(i * row + j + 1)] * y;
     return c;
 }
 
@@ -147,6 +147,8 @@ std::vector<Jet2> EdgeSide::along_all() const {
     const Interval x = middle(line_.from.x, line_.to.x, cell_.u0, cell_.u1), y = middle(line_.from.y, line_.to.y, cell_.v0, cell_.v1);
     const Interval step[] = {Interval(0.5) * step_of(line_.from.x, line_.to.x), Interval(0.5) * step_of(line_.from.y, line_.to.y)};
     const Interval across[] = {Interval(line_.cross.x), Interval(line_.cross.y)};
+    const auto most_power = [](const Interval& x) { return x.lo == 0 && x.hi == 0 ? 0 : 1000; };  // of 0 only the 0th is none
+    const int most[] = {most_power(step[0]), most_power(step[1]), most_power(across[0]), most_power(across[1])};
     std::vector<Jet2> form;
     for (const Polynomial& f : exact_) {
         if (f.degree_u() + f.degree_v() > kMostDegree) return form_at(TaylorModel::linear(0.5, 0.5));
@@ -157,8 +159,8 @@ std::vector<Jet2> EdgeSide::along_all() const {
                 for (int l = 0; l <= std::min(2, i + j); ++l) {
                     Interval weight(0);
                     for (int m = std::max(0, l - j); m <= std::min(i, l); ++m)
-                        weight += Interval(binomial(i, m) * binomial(j, l - m)) * power(across[0], m) * power(step[0], i - m) * power(across[1], l - m) * power(step[1], j - l + m);
-                    powers[std::size_t(l)][std::size_t(i + j - l)] += weight * c[std::size_t(i)][std::size_t(j)];
+                        if (i - m <= most[0] && j - l + m <= most[1] && m <= most[2] && l - m <= most[3]) weight += Interval(binomial(i, m) * binomial(j, l - m)) * power(across[0], m) * power(step[0], i - m) * power(across[1], l - m) * power(step[1], j - l + m);
+                    powers[std::size_t(l)][std::size_t(i + j - l)] += weight * c[std::size_t(i * (f.degree_v() + 1) + j)];
                 }
         const auto derivative = [](const auto& of) {  // by s
             auto d = of;
