@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "subdivision_face.h"
+#include "exact_parts.h"
 
 namespace isoparm {
 namespace {
@@ -53,6 +53,11 @@ CellForm form_beside(const Patch& patch, const Vec2& from, const Vec2& to, const
     const Vec2 middle{0.5 * from.x + 0.5 * to.x, 0.5 * from.y + 0.5 * to.y};
     const std::size_t i = cell_beside(u, middle.x, side.x), j = cell_beside(v, middle.y, side.y);
     CellForm found{{u[i], u[i + 1], v[j], v[j + 1]}, patch.exact_cell(i, j)};
+    if (has_edge_forms(found.form)) {
+        const Rect& c = found.cell;
+        const int edge = from.x == to.x && from.x == c.u0 ? 3 : from.x == to.x && from.x == c.u1 ? 1 : from.y == to.y && from.y == c.v0 ? 0 : from.y == to.y && from.y == c.v1 ? 2 : -1;
+        found.form = edge < 0 ? std::vector<Polynomial>{} : patch.exact_cell(i + std::size_t(edge + 1) * (u.size() - 1), j);
+    }
     if (!has_dyadic_parts(found.form)) return found;
     // Most lines are a side of a part.
     const double size = std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y));
@@ -66,7 +71,7 @@ CellForm form_beside(const Patch& patch, const Vec2& from, const Vec2& to, const
         if (!holds(part.rect(), from) || !holds(part.rect(), to)) return {patch.rect(), {}};
         found = {part.rect(), part.form(patch)};
     }
-    if (found.form.empty() && u.size() == 2 && v.size() == 2) found.cell = patch.rect();
+    if (found.form.empty()) found.cell = patch.rect();
     return found;
 }
 

@@ -1,7 +1,6 @@
 // edge_cells.h -- where along an edge a patch is one polynomial, and which.
 //
-// A patch has cells between its lines. The limit surface over an irregular face of a cage has none, but dyadic parts, smaller and smaller ones
-// towards extraordinary vertices, on which it is polynomial; it answers for them in place of cells (see subdivision_face.h).
+// A patch has cells between its lines; some have an exact form on parts of them only, or on their edges (exact_parts.h).
 #pragma once
 #include <vector>
 
@@ -13,7 +12,8 @@ struct CellForm {
     Rect cell;                     // closed; holds the line
     std::vector<Polynomial> form;  // as Patch::exact_cell; empty: not known
 };
-/// Of the cell that holds the line between two points; of two, the one that `side` points into.
+/// Of the cell that holds the line between two points; of two, the one that `side` points into. The form has the surface's derivatives to second order on the inside of the
+/// line, not beside it.
 CellForm form_beside(const Patch& patch, const Vec2& from, const Vec2& to, const Vec2& side);
 
 struct EdgeCuts {

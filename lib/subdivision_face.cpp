@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "error.h"
+#include "exact_parts.h"
 #include "subdivision_cell.h"
 
 namespace isoparm {
