@@ -64,7 +64,7 @@ std::vector<BezierCell> bezier_cells(const Patch& patch, int max_degree) {
     for (std::size_t i = 0; i + 1 < us.size(); ++i)
         for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
             const auto form = patch.exact_cell(i, j);
-            const auto cell = form.empty() ? std::vector<BezierCell>{} : bezier_cell(form, us[i], us[i + 1], vs[j], vs[j + 1], max_degree);
+            const auto cell = form.size() < 3 ? std::vector<BezierCell>{} : bezier_cell(form, us[i], us[i + 1], vs[j], vs[j + 1], max_degree);
             if (cell.empty()) return {};
             list.push_back(cell[0]);
         }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "continuity_joints.h"
+#include "edge_cells.h"
 #include "error.h"
 #include "topology.h"
 
@@ -69,6 +70,22 @@ double least_distance(const Composite& surface, const Joint::Side& a, const Join
     return heap.front().least;
 }
 
+using Cut = std::array<double, 2>;  // a place on both edges
+
+/// Adds those inside the part that are not there yet: near the ends, where parts get small, nearness is relative to the distance from them.
+void add_fine_cuts(std::vector<Cut> fine, const JointPart& part, std::vector<Cut>& cuts) {
+    std::sort(fine.begin(), fine.end());
+    std::vector<Cut> added;
+    for (const Cut& c : fine) {
+        const double room = std::min(c[0] - part.a0, part.a1 - c[0]);
+        if (!(room > 0)) continue;
+        const auto near = [&](const Cut& o) { return std::fabs(o[0] - c[0]) <= 1e-3 * room; };
+        if ((!added.empty() && near(added.back())) || std::any_of(cuts.begin() + 2, cuts.end(), near)) continue;
+        added.push_back(c);
+    }
+    cuts.insert(cuts.end(), added.begin(), added.end());
+}
+
 /// Cuts a part at the breaks of both edges, and makes a segment of each piece.
 void add_segments(const Composite& surface, const Joint& joint, const JointPart& part, std::vector<EdgeSegment>& out) {
     const Patch &pa = surface[joint.a.member].patch, &pb = surface[joint.b.member].patch;
@@ -80,18 +97,29 @@ void add_segments(const Composite& surface, const Joint& joint, const JointPart&
         const Vec2 p = patch.edge_point(x.edge, t);
         return nearest_on_edge(surface[y.member].patch, y.edge, patch.point(p.x, p.y), std::min(y.t0, y.t1), std::max(y.t0, y.t1));
     };
-    std::vector<std::array<double, 2>> cuts{{part.a0, part.b0}, {part.a1, part.b1}};
+    std::vector<Cut> cuts{{part.a0, part.b0}, {part.a1, part.b1}};
     const auto inside = [](double t, double t0, double t1) { return t > std::min(t0, t1) + 1e-12 && t < std::max(t0, t1) - 1e-12; };
     for (const double t : pa.edge_breaks(joint.a.edge))
         if (inside(t, part.a0, part.a1)) cuts.push_back({t, partner(run_a, run_b, t)});
     for (const double t : pb.edge_breaks(joint.b.edge))
         if (inside(t, part.b0, part.b1)) cuts.push_back({partner(run_b, run_a, t), t});
+    const EdgeCuts parts_a = joint.affine ? dyadic_cuts(pa, joint.a.edge) : EdgeCuts{}, parts_b = joint.affine ? dyadic_cuts(pb, joint.b.edge) : EdgeCuts{};
+    std::vector<Cut> fine;
+    for (const double t : parts_a.inner) fine.push_back({t, partner(run_a, run_b, t)});
+    for (const double t : parts_b.inner) fine.push_back({partner(run_b, run_a, t), t});
+    const double least = fine.empty() ? 1e-12 : 0;
+    add_fine_cuts(std::move(fine), part, cuts);
     std::sort(cuts.begin(), cuts.end());
+    const auto vertex = [](const EdgeCuts& c, double t) { return (t == 0 && c.starts) || (t == 1 && c.ends); };
+    const double tip = kTip * (part.a1 - part.a0);
+    const bool starts = vertex(parts_a, part.a0) || vertex(parts_b, part.b0), ends = vertex(parts_a, part.a1) || vertex(parts_b, part.b1);
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
         const auto [a0, b0] = cuts[k];
         const auto [a1, b1] = cuts[k + 1];
-        if (!(a1 - a0 > 1e-12) || !(std::fabs(b1 - b0) > 1e-12)) continue;
-        EdgeSegment e{side_of(pa, joint.a.edge, a0, a1, false), side_of(pb, joint.b.edge, b0, b1, true), {}, {}, {}, 0};
+        if (!(a1 - a0 > least) || !(std::fabs(b1 - b0) > least)) continue;
+        EdgeSegment e{side_of(pa, joint.a.edge, a0, a1, false), side_of(pb, joint.b.edge, b0, b1, true), {}, {}, {}, 0, {}};
+        if (starts && a1 - part.a0 <= tip) e.singular = pa.edge_point(joint.a.edge, part.a0);
+        if (ends && part.a1 - a0 <= tip) e.singular = pa.edge_point(joint.a.edge, part.a1);
         if (!joint.affine) {
             const Joint::Side a{joint.a.member, joint.a.edge, a0, a1, 0}, b{joint.b.member, joint.b.edge, b0, b1, 0};
             e.matched = [&surface, a, b](double middle, double half) { return nearest_run(surface, a, b, middle, half); };
@@ -111,7 +139,7 @@ std::vector<EdgeSegment> line_segments(const Composite& surface, const Joint& li
     for (std::size_t k = 0; k + 1 < along.size(); ++k) {
         const auto at = [&](double t) { return is_u ? Vec2{line.a.value, t} : Vec2{t, line.a.value}; };
         const ParameterLine l{at(along[k]), at(along[k + 1]), across};
-        r.push_back({EdgeSide(patch, l, opposite(across)), EdgeSide(patch, l, across), {}, {}, {}, 0});
+        r.push_back({EdgeSide(patch, l, opposite(across)), EdgeSide(patch, l, across), {}, {}, {}, 0, {}});
     }
     return r;
 }

@@ -45,10 +45,29 @@ Apart apart(const Composite& surface, const Side& a, const Side& b) {
     return d;
 }
 
+double length_between(const Composite& surface, const Side& s) {
+    double sum = 0;
+    for (int k = 0; k < kSamples; ++k) sum += distance(position(surface, s, k / double(kSamples)), position(surface, s, (k + 1) / double(kSamples)));
+    return sum;
+}
+/// Of an edge, in its parameter: what is nearer to its end than four times the distance within which vertices are one belongs to the end. Where two edges are apart by just that distance,
+/// a vertex may be too far from a vertex, and near enough to the edge beside it.
+double near_end(const Composite& surface, std::uint32_t member, int edge, double within) {
+    const double length = length_between(surface, {member, edge, 0, 1, 0});
+    return length > 0 ? std::min(1e-3, 4 * within / length) : 0;
+}
+
+/// Places of T-joints were found as the nearest to a vertex, up to rounding. Most are halves, quarters ...: there the two patches have common parts, on which both are exact.
+double snapped(double t, double near) {
+    if (t <= near || t >= 1 - near) return t <= near ? 0 : 1;
+    const double dyadic = std::round(t * 0x1p10) * 0x1p-10;
+    return std::fabs(t - dyadic) <= 1e-13 ? dyadic : t;
+}
+
 bool whole(const Side& s) { return std::min(s.t0, s.t1) <= kSnap && std::max(s.t0, s.t1) >= 1 - kSnap; }
 
 /// One joint of all rims that two edges share in one direction.
-std::vector<FoundJoint> joints_of(const Composite& surface, const Topology& topology, double size) {
+std::vector<FoundJoint> joints_of(const Composite& surface, const Topology& topology, double size, double within) {
     std::map<std::tuple<std::uint32_t, int, std::uint32_t, int, bool>, std::vector<std::pair<RimUse, RimUse>>> groups;
     for (const Rim& rim : topology.rims) {
         if (rim.collapsed || rim.uses.size() != 2) continue;
@@ -60,7 +79,11 @@ std::vector<FoundJoint> joints_of(const Composite& surface, const Topology& topo
     std::vector<FoundJoint> found;
     for (auto& [key, rims] : groups) {
         std::sort(rims.begin(), rims.end(), [](const auto& x, const auto& y) { return x.first.t0 < y.first.t0; });
-        for (const auto& [a, b] : rims) {
+        const double near_a = near_end(surface, std::get<0>(key), std::get<1>(key), within), near_b = near_end(surface, std::get<2>(key), std::get<3>(key), within);
+        for (auto [a, b] : rims) {
+            for (double* t : {&a.t0, &a.t1}) *t = snapped(*t, near_a);
+            for (double* t : {&b.t0, &b.t1}) *t = snapped(*t, near_b);
+            if (a.t0 == a.t1 || b.t0 == b.t1) continue;
             const Side sa{a.member, a.edge, a.t0, a.t1, 0}, sb{b.member, b.edge, b.t0, b.t1, 0};
             const Apart d = apart(surface, sa, sb);
             const bool affine = !(d.in_step > 1e-12 * size && d.nearest < 0.1 * d.in_step);
@@ -79,7 +102,7 @@ std::vector<FoundJoint> joints_of(const Composite& surface, const Topology& topo
 }
 
 /// Runs of rims that no second patch uses.
-std::vector<Side> open_runs(const Composite& surface, const Topology& topology) {
+std::vector<Side> open_runs(const Composite& surface, const Topology& topology, double within) {
     std::vector<Side> runs;
     for (std::uint32_t m = 0; m < surface.size(); ++m)
         for (int k = 0; k < surface[m].patch.edges(); ++k) {
@@ -92,6 +115,11 @@ std::vector<Side> open_runs(const Composite& surface, const Topology& topology) 
                 before = open;
             }
         }
+    for (Side& s : runs) {
+        const double near = s.t0 < 1e-3 || s.t1 > 1 - 1e-3 ? near_end(surface, s.member, s.edge, within) : 0;
+        s.t0 = snapped(s.t0, near), s.t1 = snapped(s.t1, near);
+    }
+    std::erase_if(runs, [](const Side& s) { return s.t0 == s.t1; });
     return runs;
 }
 
@@ -100,11 +128,6 @@ struct Run {
     Point low, high, first, last;
     double length = 0, reach = 0;
 };
-double length_between(const Composite& surface, const Side& s) {
-    double sum = 0;
-    for (int k = 0; k < kSamples; ++k) sum += distance(position(surface, s, k / double(kSamples)), position(surface, s, (k + 1) / double(kSamples)));
-    return sum;
-}
 /// Unit vector across an edge, in the surface, into the patch.
 Point inward(const Composite& surface, const Side& side) {
     const Patch& patch = surface[side.member].patch;
@@ -224,8 +247,9 @@ void capture_gaps(const Composite& surface, const ContinuityOptions& options, Fo
 }  // namespace
 
 FoundJoints find_joints(const Composite& surface, const ContinuityOptions& options) {
-    const Topology topology = find_topology(surface, std::max(options.tolerance, 1e-7 * options.size));
-    FoundJoints found{joints_of(surface, topology, options.size), {}, open_runs(surface, topology)};
+    const double within = std::max(options.tolerance, 1e-7 * options.size);
+    const Topology topology = find_topology(surface, within);
+    FoundJoints found{joints_of(surface, topology, options.size, within), {}, open_runs(surface, topology, within)};
     for (std::uint32_t m = 0; m < surface.size(); ++m)
         for (int k = 0; k < surface[m].patch.edges(); ++k)
             for (const EdgeRim& r : topology.edges[m][std::size_t(k)])

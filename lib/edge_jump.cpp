@@ -9,11 +9,10 @@
 namespace isoparm {
 namespace {
 
-using Sizes = std::array<Interval, kMeasures>;
+using Sizes = JumpSizes;
 using Models = Vec3<TaylorModel>;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kTip = 0x1p-12;       // pieces of an edge of which nothing is known are not made shorter
 constexpr double kShortest = 0x1p-44;  // nor any other
 constexpr int kFew = 8;                // halvings before a bound is taken for as good as it gets
 const Interval kUnknown{0, kInfinite};
@@ -33,9 +32,6 @@ Interval length_of(const Models& v) {
     return sqrt(Interval(lo, hi));
 }
 
-double degrees_up(double angle) { return std::min(180.0, (Interval(rounding::above(angle)) * (Interval(180) / rounding::pi)).hi); }
-double degrees_down(double angle) { return angle <= 0 ? 0 : std::max(0.0, (Interval(rounding::below(angle)) * (Interval(180) / rounding::pi)).lo); }
-
 /// Of the angle between two vectors: by their cross product over their dot product, which is sharp near 0 where the cosine is blind.
 Interval angle_of(const Models& p, const Models& q) {
     const Models c = cross(p, q);
@@ -43,11 +39,9 @@ Interval angle_of(const Models& p, const Models& q) {
     const Interval y = length_of(c), x = d.range();
     if (x.lo > 0) {
         const Interval t = length_of({c.x / d, c.y / d, c.z / d});
-        if (t.hi < kInfinite) return {degrees_down(std::atan(t.lo)), degrees_up(std::atan(t.hi))};
+        if (t.hi < kInfinite) return degrees_of(t, Interval(1));
     }
-    if (!(y.hi < kInfinite) || !x.bounded() || (y.lo == 0 && x.lo <= 0 && x.hi >= 0)) return kUnknown;
-    const double most = x.lo < 0 ? std::atan2(y.lo, x.lo) : std::atan2(y.hi, x.lo), least = x.hi > 0 ? std::atan2(y.lo, x.hi) : std::atan2(y.hi, x.hi);
-    return {degrees_down(least), degrees_up(most)};
+    return degrees_of(y, x);
 }
 
 struct Normal {
@@ -72,7 +66,7 @@ public:
 
     std::array<JumpBound, kMeasures> run() {
         for (std::size_t k = 0; k < segments_.size(); ++k) {
-            sample(k, 0), sample(k, 1);
+            if (!segments_[k].singular) sample(k, 0), sample(k, 1);
             add(k, 0.5, 0.5);
         }
         for (int m; (m = first_open()) < kMeasures; ++halved_[m]) {
@@ -89,11 +83,15 @@ private:
     struct Piece {
         std::size_t segment;
         double middle, half;
-        std::array<double, kMeasures> upper;
+        std::array<double, kMeasures> upper, middle_upper;  // middle_upper: of the jump in the middle alone, if measured; no piece around it has less
     };
 
     Sizes measure(std::size_t k, double middle, double half) const {
         const EdgeSegment& e = segments_[k];
+        if (e.singular && !(e.a.exact() && e.b.exact())) {
+            const Vec3<Interval> apart = e.a.positions(middle, half) - e.b.positions(middle, half);
+            return {length_of({apart.x, apart.y, apart.z}), kUnknown, kUnknown, kUnknown, kUnknown};
+        }
         const EdgeSide::Jet x = e.a.jet(middle, half);
         if (e.curve) {
             Sizes s;
@@ -101,13 +99,15 @@ private:
             return s;
         }
         const EdgeSide::Jet y = e.matched ? e.b.jet(e.matched(middle, half)) : e.b.jet(middle, half);
-        Sizes s;
         const auto jump = [&](int n) { return part(x, n) - part(y, n); };
-        if (wanted_[kC0]) s[kC0] = length_of(jump(0));
-        if (wanted_[kC1]) s[kC1] = length_of(jump(2));
-        if (wanted_[kC2]) s[kC2] = length_of(jump(5)) * Interval(2);
-        if (wanted_[kG1]) s[kG1] = e.matched ? angle_of(e.a.normal(middle, half), EdgeSide::normal(y)) : angle_of(e.a.normal(middle, half), e.b.normal(middle, half));
-        if (wanted_[kG2]) {
+        if (e.singular) return {length_of(jump(0)), kUnknown, kUnknown, kUnknown, kUnknown};
+        Sizes s = estimate_jumps(x, y);
+        const auto open = [&](int m) { return wanted_[m] && !(s[m].hi <= 0.01 * limits_.tolerance[m] || (half == 0 && s[m].hi - s[m].lo <= 1e-3 * s[m].hi)); };
+        if (open(kC0)) s[kC0] = length_of(jump(0));
+        if (open(kC1)) s[kC1] = length_of(jump(2));
+        if (open(kC2)) s[kC2] = length_of(jump(5)) * Interval(2);
+        if (open(kG1)) s[kG1] = e.matched ? angle_of(e.a.normal(middle, half), EdgeSide::normal(y)) : angle_of(e.a.normal(middle, half), e.b.normal(middle, half));
+        if (open(kG2)) {
             const Normal p(x), q(y);
             const Interval r = (cross_curvature(x, p) - cross_curvature(y, q)).range();
             s[kG2] = r.bounded() ? abs(r) : kUnknown;
@@ -115,16 +115,20 @@ private:
         return s;
     }
 
-    void sample(std::size_t k, double s) {
+    Sizes sample(std::size_t k, double s) {
         Sizes sizes = measure(k, s, 0);
         if (wanted_[kC0] && segments_[k].distance) sizes[kC0].lo = std::min(sizes[kC0].lo, segments_[k].distance(s));
         for (int m = 0; m < kMeasures; ++m)
             if (wanted_[m] && sizes[m].lo > bounds_[m].lower) bounds_[m].lower = sizes[m].lo, bounds_[m].at = segments_[k].a.at(s);
+        return sizes;
     }
     void add(std::size_t k, double middle, double half) {
-        if (pieces_.size() < 256) sample(k, middle);  // by then the lower bounds are as good as they get
+        Piece p{k, middle, half, {}, {}};
+        if (pieces_.size() < 256) {  // by then the lower bounds are as good as they get
+            const Sizes sizes = sample(k, middle);
+            for (int m = 0; m < kMeasures; ++m) p.middle_upper[m] = sizes[m].hi;
+        }
         const Sizes sizes = measure(k, middle, half);
-        Piece p{k, middle, half, {}};
         for (int m = 0; m < kMeasures; ++m) {
             // What is not wanted any more is known for the piece's parent already; its bound has been settled.
             p.upper[m] = wanted_[m] ? (sizes[m].hi <= std::numeric_limits<double>::max() ? sizes[m].hi : kInfinite) : 0;
@@ -134,7 +138,13 @@ private:
 
     /// Too short to be halved, and nothing known: the end of an edge at a pole or a singular corner.
     bool at_tip(const Piece& p) const {
-        return p.half <= kTip / 2 && ((p.segment == 0 && p.middle - p.half <= 0) || (p.segment + 1 == segments_.size() && p.middle + p.half >= 1));
+        return segments_[p.segment].singular || (p.half <= kTip / 2 && ((p.segment == 0 && p.middle - p.half <= 0) || (p.segment + 1 == segments_.size() && p.middle + p.half >= 1)));
+    }
+
+    void add_end(JumpBound& b, const Piece& p) const {
+        const EdgeSegment& e = segments_[p.segment];
+        const Vec2 end = e.singular ? *e.singular : e.a.at(p.middle < 0.5 ? 0 : 1);
+        if (std::none_of(b.singular.begin(), b.singular.end(), [&](const Vec2& x) { return x.x == end.x && x.y == end.y; })) b.singular.push_back(end);
     }
 
     /// Sets the bound of a measure from its pieces, and says which of them is the worst.
@@ -144,7 +154,7 @@ private:
         b.inside = -1, b.singular.clear();
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             const Piece& p = pieces_[i];
-            if (p.upper[m] == kInfinite && at_tip(p)) b.singular.push_back(segments_[p.segment].a.at(p.middle < 0.5 ? 0 : 1));
+            if (p.upper[m] == kInfinite && at_tip(p)) add_end(b, p);
             else if (p.upper[m] > b.inside) b.inside = p.upper[m], worst_[m] = i;
         }
         b.inside = std::max(b.inside, b.lower);
@@ -157,8 +167,12 @@ private:
             find_worst(m);
             const JumpBound& b = bounds_[m];
             const bool enough = b.inside <= 0.01 * limits_.tolerance[m] || (b.inside < kInfinite && b.inside - b.lower <= limits_.relative * b.inside) || (b.inside <= limits_.tolerance[m] && halved_[m] >= kFew);
+            const double rounding = pieces_[worst_[m]].middle_upper[m], tolerance = limits_.tolerance[m];
+            const bool hopeless = b.lower <= tolerance && b.inside <= 3 * rounding && (b.inside <= tolerance || rounding > tolerance);
+            // Around an extraordinary vertex the surface is known by a box: shorter pieces have the same.
+            const bool box = b.inside <= tolerance && segments_[pieces_[worst_[m]].segment].singular;
             const double shortest = b.inside < kInfinite ? kShortest : kTip;
-            if (!enough && pieces_[worst_[m]].half > shortest / 2 && halved_[m] < limits_.max_halvings && !stalled(m)) return m;
+            if (!enough && !hopeless && !box && pieces_[worst_[m]].half > shortest / 2 && halved_[m] < limits_.max_halvings && !stalled(m)) return m;
             settled_[m] = true, wanted_[m] = false;
         }
         return kMeasures;

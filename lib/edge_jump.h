@@ -8,13 +8,12 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
-#include "edge_side.h"
+#include "edge_estimate.h"
 
 namespace isoparm {
-
-enum Measure5 { kC0, kC1, kC2, kG1, kG2, kMeasures };
 
 /// The largest jump along an edge lies in [lower, upper]; upper is infinite where nothing is proved.
 struct JumpBound {
@@ -23,6 +22,8 @@ struct JumpBound {
     std::vector<Vec2> singular;  // ends of the edge next to which (2^-12 of its length) nothing has a bound: then upper is infinite,
     double inside = 0;           // and the bound on the rest is this; else it is upper
 };
+
+inline constexpr double kTip = 0x1p-12;  // of the length of an edge: next to a singular end, where nothing is known
 
 /// A part of an edge within one cell of either side.
 struct EdgeSegment {
@@ -34,6 +35,8 @@ struct EdgeSegment {
     /// What a is compared with instead of b, if anything: its position, or with derivative 1 its derivative across, against this curve (c0 alone).
     std::function<Vec3<TaylorModel>(double middle, double half)> curve;
     int derivative = 0;
+    /// Next to an extraordinary vertex (2^-12 of the edge), where derivatives have no bound: its parameters on side a. Positions alone are compared.
+    std::optional<Vec2> singular;
 };
 
 struct JumpLimits {

@@ -2,17 +2,13 @@
 
 #include <algorithm>
 
+#include "edge_cells.h"
+
 namespace isoparm {
 namespace {
 
 using Jet2 = JetUV<TaylorModel, 2>;
-
-/// The cell of x between lines; on a line, the one that `side` points into.
-std::size_t cell_beside(const std::vector<double>& lines, double x, double side) {
-    std::size_t i = 0;
-    while (i + 2 < lines.size() && (lines[i + 1] < x || (lines[i + 1] == x && side > 0))) ++i;
-    return i;
-}
+constexpr int kMostDegree = TaylorModel::order;
 
 Jet2 variable(const Interval& from, const Interval& step, double cross, const TaylorModel& s) {
     Jet2 x;
@@ -33,6 +29,22 @@ Jet2 evaluate(const Polynomial& p, const Jet2& x, const Jet2& y) {
         sum = i < p.degree_u() ? sum * x + row : row;
     }
     return sum;
+}
+
+/// Taylor coefficients about (x,y) of a polynomial, those of u^i v^j at i (degree of v + 1) + j.
+std::vector<Interval> recentred(const Polynomial& f, const Interval& x, const Interval& y) {
+    const int p = f.degree_u(), q = f.degree_v(), row = q + 1;
+    std::vector<Interval> c(std::size_t((p + 1) * row));
+    for (int i = 0; i <= p; ++i)
+        for (int j = 0; j <= q; ++j) c[std::size_t(i * row + j)] = f.coefficient(i, j);
+    const auto zero = [](const Interval& t) { return t.lo == 0 && t.hi == 0; };
+    for (int k = 0; k < p && !zero(x); ++k)  // repeated synthetic division
+        for (int i = p - 1; i >= k; --i)
+            for (int j = 0; j <= q; ++j) c[std::size_t(i * row + j)] += c[std::size_t((i + 1) * row + j)] * x;
+    for (int i = 0; i <= p; ++i)
+        for (int k = 0; k < q && !zero(y); ++k)
+            for (int j = q - 1; j >= k; --j) c[std::size_t(i * row + j)] += c[std::size_t(i * row + j + 1)] * y;
+    return c;
 }
 
 Interval step_of(double from, double to) { return Interval(to) - Interval(from); }
@@ -114,12 +126,10 @@ ParameterLine edge_line(const Patch& patch, int edge, double t0, double t1) {
 }
 
 EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : patch_(std::move(patch)), line_(line) {
-    const auto u = patch_.lines_u(), v = patch_.lines_v();
-    const std::size_t i = cell_beside(u, 0.5 * line.from.x + 0.5 * line.to.x, side.x), j = cell_beside(v, 0.5 * line.from.y + 0.5 * line.to.y, side.y);
-    cell_ = {u[i], u[i + 1], v[j], v[j + 1]};
-    exact_ = patch_.exact_cell(i, j);
+    const CellForm cell = form_beside(patch_, line.from, line.to, side);
+    cell_ = cell.cell, exact_ = cell.form;
     if (exact_.empty()) return;
-    whole_ = form_at(TaylorModel::linear(0.5, 0.5));
+    whole_ = along_all();
     for (const Jet2& x : whole_)
         for (const TaylorModel& c : x.c)
             if (!c.exact()) {
@@ -132,6 +142,47 @@ EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : p
         return;
     }
     find_directions();
+}
+
+// With (x,y) = middle + d step + b cross: the powers of b to the second are polynomials in d = 2 s - 1, whose derivatives are those by s, halved.
+std::vector<Jet2> EdgeSide::along_all() const {
+    const auto middle = [](double from, double to, double u0, double u1) {
+        return Interval(0.5) * (Interval(from) + Interval(to)) - Interval(mid(Interval(u0, u1)));
+    };
+    const Interval x = middle(line_.from.x, line_.to.x, cell_.u0, cell_.u1), y = middle(line_.from.y, line_.to.y, cell_.v0, cell_.v1);
+    const Interval step[] = {Interval(0.5) * step_of(line_.from.x, line_.to.x), Interval(0.5) * step_of(line_.from.y, line_.to.y)};
+    const Interval across[] = {Interval(line_.cross.x), Interval(line_.cross.y)};
+    const auto most_power = [](const Interval& x) { return x.lo == 0 && x.hi == 0 ? 0 : 1000; };  // of 0 only the 0th is none
+    const int most[] = {most_power(step[0]), most_power(step[1]), most_power(across[0]), most_power(across[1])};
+    std::vector<Jet2> form;
+    for (const Polynomial& f : exact_) {
+        if (f.degree_u() + f.degree_v() > kMostDegree) return form_at(TaylorModel::linear(0.5, 0.5));
+        const auto c = recentred(f, x, y);
+        std::array<std::array<Interval, kMostDegree + 3>, 3> powers{};  // [l][k]: of b^l d^k
+        for (int i = 0; i <= f.degree_u(); ++i)
+            for (int j = 0; j <= f.degree_v(); ++j)
+                for (int l = 0; l <= std::min(2, i + j); ++l) {
+                    Interval weight(0);
+                    for (int m = std::max(0, l - j); m <= std::min(i, l); ++m)
+                        if (i - m <= most[0] && j - l + m <= most[1] && m <= most[2] && l - m <= most[3]) weight += Interval(binomial(i, m) * binomial(j, l - m)) * power(across[0], m) * power(step[0], i - m) * power(across[1], l - m) * power(step[1], j - l + m);
+                    powers[std::size_t(l)][std::size_t(i + j - l)] += weight * c[std::size_t(i * (f.degree_v() + 1) + j)];
+                }
+        const auto derivative = [](const auto& of) {  // by s
+            auto d = of;
+            for (std::size_t k = 0; k + 1 < of.size(); ++k) d[k] = of[k + 1] * Interval(2.0 * double(k + 1));
+            d.back() = Interval(0);
+            return d;
+        };
+        const auto model = [](const auto& of) { return TaylorModel::polynomial(of.data(), kMostDegree); };
+        const auto first = derivative(powers[0]);
+        Jet2 jet;
+        jet.c[0] = model(powers[0]), jet.c[1] = model(first), jet.c[2] = model(powers[1]), jet.c[4] = model(derivative(powers[1])), jet.c[5] = model(powers[2]);
+        auto second = derivative(first);
+        for (Interval& k : second) k = k * Interval(0.5);
+        jet.c[3] = model(second);
+        form.push_back(jet);
+    }
+    return form;
 }
 
 // Of a rational surface X/w the derivatives have the directions of X' w - X w', which are polynomials.
@@ -184,21 +235,26 @@ std::vector<Jet2> EdgeSide::form_at(const TaylorModel& s) const {
     return form;
 }
 
+Box EdgeSide::box(const Interval& s) const {
+    // On the far side of the cell the patch would answer with the next one: the box reaches a little into this one.
+    const auto inside = [](Interval x, double low, double high) {
+        x = clip(x, {low, high});
+        return x.lo == high ? Interval(std::nextafter(high, low), high) : x;
+    };
+    return {inside(Interval(line_.from.x) + step_of(line_.from.x, line_.to.x) * s, cell_.u0, cell_.u1),
+            inside(Interval(line_.from.y) + step_of(line_.from.y, line_.to.y) * s, cell_.v0, cell_.v1)};
+}
+Vec3<Interval> EdgeSide::positions(double middle, double half) const {
+    return patch_.enclose_points(box(Interval(middle) + Interval(-half, half)));
+}
+
 EdgeSide::Jet EdgeSide::enclosed(const TaylorModel& s) const {
     const double centre = mid(s.coefficient(0));
     const Interval reach = s.range();
     const TaylorModel D = s - TaylorModel(centre);
     const Interval along[] = {step_of(line_.from.x, line_.to.x), step_of(line_.from.y, line_.to.y)};
     const double across[] = {line_.cross.x, line_.cross.y};
-    const auto place = [&](const Interval& t) {
-        // On the far side of the cell the patch would answer with the next one: the box reaches a little into this one.
-        const auto inside = [](Interval x, double low, double high) {
-            x = clip(x, {low, high});
-            return x.lo == high ? Interval(std::nextafter(high, low), high) : x;
-        };
-        return Box{inside(Interval(line_.from.x) + along[0] * t, cell_.u0, cell_.u1), inside(Interval(line_.from.y) + along[1] * t, cell_.v0, cell_.v1)};
-    };
-    const auto at = patch_.enclose(place(Interval(centre))).over, over = patch_.enclose(place(reach)).over;
+    const auto at = patch_.enclose(box(Interval(centre))).over, over = patch_.enclose(box(reach)).over;
     const Directional directional(along, across);
     Jet r;
     for (int axis = 0; axis < 3; ++axis) {

@@ -32,6 +32,10 @@ public:
     Vec2 at(double s) const { return {line_.from.x + s * (line_.to.x - line_.from.x), line_.from.y + s * (line_.to.y - line_.from.y)}; }
     /// Over s in [middle - half, middle + half]; at one point when half is 0.
     Jet jet(double middle, double half) const;
+    /// Box of the positions over the same; cheap.
+    Vec3<Interval> positions(double middle, double half) const;
+    /// Is the surface known as polynomial or rational?
+    bool exact() const { return !exact_.empty(); }
     /// Of the direction of S_s x S_cross, of any length, over the same. Where the edge ends in a pole, and S_cross (or S_s) goes to 0 there
     /// (as far as rounding lets one see; it is taken for an exact 0), that factor is divided out: the direction has its limit at the end.
     Vec3<TaylorModel> normal(double middle, double half) const;
@@ -40,9 +44,11 @@ public:
     Jet jet(const TaylorModel& s) const;
 
 private:
+    std::vector<JetUV<TaylorModel, 2>> along_all() const;
     Jet of_form(const std::vector<JetUV<TaylorModel, 2>>& form) const;
     std::vector<JetUV<TaylorModel, 2>> form_at(const TaylorModel& s) const;
     Jet enclosed(const TaylorModel& s) const;
+    Box box(const Interval& s) const;
     void find_directions();
 
     Patch patch_;

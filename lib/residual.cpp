@@ -56,7 +56,7 @@ JumpBound bound_residual(const Patch& of, const Promise& promise, double toleran
         const auto [s1, t1] = cuts[k + 1];
         const auto place = [&](double s) { return s == 0 ? from : s == 1 ? to : Vec2{from.x + s * (to.x - from.x), from.y + s * (to.y - from.y)}; };
         const EdgeSide side(patch, {place(s0), place(s1), cross}, cross);
-        EdgeSegment e{side, side, {}, {}, {}, promise.derivative};
+        EdgeSegment e{side, side, {}, {}, {}, promise.derivative, {}};
         e.curve = [curve, exact = curve(Polynomial::variable_u(Interval(t0, t1))), a = t0, b = t1](double middle, double half) { return model_of(curve, exact, a, b, middle, half); };
         segments.push_back(std::move(e));
     }

@@ -108,6 +108,15 @@ SubdivisionCell make_subdivision_cell(const Controls& control, const FacePlace& 
     return scheme == Scheme::loop ? quartic(control, at) : bicubic(control, at);
 }
 
+SubdivisionCell moved(SubdivisionCell cell, const Vec3<Interval>& by) {
+    for (int axis = 0; axis < 3; ++axis) {
+        Interval& c = cell.exact[axis].coefficient(0, 0);
+        c = c + by[axis];
+        cell.c[0][axis] = mid(c);
+    }
+    return cell;
+}
+
 std::vector<Point> bezier_points(const Controls& control, Scheme scheme) {
     // The Bezier points of a polynomial are its blossoms; of a cubic spline segment: 6 times the weights of its control points.
     static constexpr double cubic[4][4] = {{1, 4, 1, 0}, {0, 4, 2, 0}, {0, 2, 4, 0}, {0, 1, 4, 1}};

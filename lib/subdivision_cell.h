@@ -30,6 +30,9 @@ struct FacePlace {
 /// The piece of the limit surface with these control points, in the order of Subdivider::regular().
 SubdivisionCell make_subdivision_cell(const std::vector<Vec3<Interval>>& control, const FacePlace& at, Scheme scheme);
 
+/// The same, translated.
+SubdivisionCell moved(SubdivisionCell cell, const Vec3<Interval>& by);
+
 /// The Bezier points of a regular face, from its 16 or 12 control points: of Catmull-Clark at 4 i + j, i along u; of Loop
 /// in the order of make_bezier_triangle.
 std::vector<Point> bezier_points(const std::vector<Vec3<Interval>>& control, Scheme scheme);

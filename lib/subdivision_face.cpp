@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "error.h"
+#include "exact_parts.h"
 #include "subdivision_cell.h"
 
 namespace isoparm {
@@ -17,6 +18,7 @@ using Box3 = Vec3<Interval>;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kDeepest = 52;       // parameters of sub-faces stay exact
 constexpr int kAllSmooth = 11;     // by then semi-sharp creases are smooth
+constexpr int kMostMoves = 20;     // of the origin; each may add one unit in the last place of positions
 constexpr int kLimitSteps = 400;   // the slowest neighbourhood shrinks by 0.66 a step
 
 double size_of(const Box3& b) { return rounding::length_up(b.x.hi - b.x.lo, b.y.hi - b.y.lo, b.z.hi - b.z.lo); }
@@ -124,7 +126,7 @@ public:
     SubdivisionFace(const Ring<Interval>& ring, Scheme scheme, FaceLimits& limits) : scheme_(scheme) {
         nodes_.emplace_back();
         nodes_[0].at = {0, 0, 1};
-        build(0, ring, 0, limits);
+        build(0, ring, {}, 0, limits);
         for (Core& c : cores_) {  // from the whole face: rings as small as cores have lost their digits
             const int k = c.u == 0 ? (c.v == 0 ? 0 : triangle() ? 2 : 3) : c.v == 0 ? 1 : 2;
             if ((c.u == 0 || c.u == 1) && (c.v == 0 || c.v == 1)) c.normal = limit_normal(ring, k, scheme);
@@ -149,6 +151,20 @@ public:
             const PointFrame f = frame(u[k], v.size() == 1 ? v[0] : v[k]);
             for (int axis = 0; axis < 3; ++axis) out.position[axis][k] = f[axis].c[0], out.du[axis][k] = f[axis].c[1], out.dv[axis][k] = f[axis].c[2];
         }
+    }
+    std::vector<Polynomial> exact_cell(std::size_t i, std::size_t j) const override {
+        const int level = dyadic_level(i);
+        if (dyadic_level(j) != level) return {};
+        const Node* n = &nodes_[0];
+        for (int bit = level - 1; bit >= 0; --bit) {
+            const bool right = ((i + 1) >> bit) & 1, up = ((j + 1) >> bit) & 1;
+            if (n->children < 0 || (triangle() && right && up)) return {};
+            n = &nodes_[n->children + (triangle() ? (right ? 1 : up ? 2 : 0) : right ? (up ? 2 : 1) : up ? 3 : 0)];
+        }
+        if (n->children >= 0) return {Polynomial(0)};
+        if (n->cell < 0) return {};
+        const auto& x = cells_[n->cell].exact;
+        return {x.x, x.y, x.z};
     }
     std::optional<Point> singular_normal(double u, double v) const override {
         const Node& n = leaf(u, v);
@@ -231,7 +247,15 @@ private:
     }
     static Box clipped(const Box& box, const FacePlace& at) { return {clip(box.u, at.across_u()), clip(box.v, at.across_v())}; }
 
-    void build(int node, const Ring<Interval>& ring, int depth, FaceLimits& limits) {
+    // Points are kept less an origin near them, so that what rounding adds shrinks with the pieces; `origin` is that of `given`.
+    void build(int node, const Ring<Interval>& given, Box3 origin, int depth, FaceLimits& limits) {
+        Ring<Interval> ring = given;
+        if (depth <= kMostMoves) {
+            const Point at = middle(ring.points[ring.faces[0][0]]);
+            const Box3 by{at.x, at.y, at.z};
+            for (Box3& p : ring.points) p = p - by;
+            origin = origin + by;
+        }
         const Subdivider<Interval> s(ring, scheme_);
         const FacePlace at = nodes_[node].at;
         if (++limits.pieces > limits.most_pieces)  // those that are refined count too: they can be all there is
@@ -239,7 +263,7 @@ private:
                                                " pieces, refined ones included; give semi-sharp creases less sharpness, or 10 for infinite, or split the cage");
         if (const auto control = s.regular()) {
             nodes_[node].cell = static_cast<int>(cells_.size());
-            cells_.push_back(make_subdivision_cell(*control, at, scheme_));
+            cells_.push_back(moved(make_subdivision_cell(*control, at, scheme_), origin));
             nodes_[node].hull = positions(cells_.back(), {at.across_u(), at.across_v()});
             nodes_[node].over = static_cast<int>(overs_.size());
             overs_.push_back(derivatives(cells_.back(), {at.across_u(), at.across_v()}));
@@ -248,10 +272,10 @@ private:
         const Box3 all = hull_of(ring);
         if (depth == kDeepest || (depth >= kAllSmooth && size_of(all) <= limits.core)) {
             nodes_[node].core = static_cast<int>(cores_.size());
-            nodes_[node].hull = all;
+            nodes_[node].hull = all + origin;
             int k = 0;  // the extraordinary corner
             while (k + 1 < static_cast<int>(ring.faces[0].size()) && s.regular_at(k)) ++k;
-            cores_.push_back({node, k == 1 || (k == 2 && !triangle()) ? at.u + at.h : at.u, k >= 2 ? at.v + at.h : at.v, limit_position(ring, k, scheme_), {}});
+            cores_.push_back({node, k == 1 || (k == 2 && !triangle()) ? at.u + at.h : at.u, k >= 2 ? at.v + at.h : at.v, limit_position(ring, k, scheme_) + origin, {}});
             return;
         }
         const int first = static_cast<int>(nodes_.size());
@@ -259,7 +283,7 @@ private:
         nodes_[node].children = first;
         for (int k = 0; k < 4; ++k) {
             nodes_[first + k].at = at.child(k, triangle());
-            build(first + k, s.child(k), depth + 1, limits);
+            build(first + k, s.child(k), origin, depth + 1, limits);
             nodes_[node].hull = k == 0 ? nodes_[first].hull : hull(nodes_[node].hull, nodes_[first + k].hull);
         }
         if (std::any_of(nodes_.begin() + first, nodes_.begin() + first + 4, [](const Node& n) { return n.over < 0; })) return;

@@ -22,7 +22,7 @@ struct FaceLimits {
     std::atomic<std::size_t> pieces{0};
 };
 
-/// `ring`: of a quad (Catmull-Clark) or a triangle (Loop). Throws Error(budget) when there are more pieces than the limits allow.
+/// `ring`: of a quad (Catmull-Clark) or a triangle (Loop). Throws Error(budget) when there are more pieces than the limits allow. The patch is exact on
+/// dyadic parts: exact_parts.h.
 Patch make_subdivision_face(const Ring<Interval>& ring, Scheme scheme, FaceLimits& limits);
-
 }  // namespace isoparm

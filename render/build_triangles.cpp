@@ -15,7 +15,7 @@ namespace {
 
 using Three = std::array<Curve, 3>;
 
-constexpr const char* common_keys[] = {"type", "method", "edges", "repair"};
+constexpr const char* common_keys[] = {"type", "method", "edges", "repair"};  // and "loop", where there is nothing along the edges
 
 struct Method {
     const char* name;
@@ -82,10 +82,23 @@ std::map<std::string, std::vector<std::string>> triangle_methods() {
     std::map<std::string, std::vector<std::string>> keys;
     for (const auto& m : methods()) {
         keys[m.name] = {"edges", "repair"};
+        if (!m.along) keys[m.name].push_back("loop");
         keys[m.name].insert(keys[m.name].end(), m.keys.begin(), m.keys.end());
     }
     return keys;
 }
+
+namespace {
+
+Three edges_of(const Json& j, SceneBuilder& scene) {
+    const auto loop = j.find("loop");
+    if (!loop) return three(j, "edges", "the edges [E1: B to C, E2: C to A, E3: A to B]", scene);
+    for (const char* key : {"edges", "repair"})
+        if (const auto also = j.find(key)) also->expected("\"loop\" without \"" + std::string(key) + "\": a loop gives all three curves and is always put in order");
+    return three(j, "loop", "the three curves around", scene);  // fitted() turns and exchanges what does not run around
+}
+
+}  // namespace
 
 BuiltSurface build_coons_triangle(const Json& j, SceneBuilder& scene) {
     std::vector<std::string> names;
@@ -93,11 +106,11 @@ BuiltSurface build_coons_triangle(const Json& j, SceneBuilder& scene) {
     for (const auto& m : methods()) names.push_back(m.name), all += (all.empty() ? "" : ", ") + names.back();
     const Method& method = methods()[scene.values().word(j.at("method", "one of the methods " + all), names)];
     for (const auto& key : j.children())
-        if (std::find(std::begin(common_keys), std::end(common_keys), key.key()) == std::end(common_keys) && std::find(method.keys.begin(), method.keys.end(), key.key()) == method.keys.end())
+        if (!(key.key() == "loop" && !method.along) && std::find(std::begin(common_keys), std::end(common_keys), key.key()) == std::end(common_keys) && std::find(method.keys.begin(), method.keys.end(), key.key()) == method.keys.end())
             key.fail_at_key("found \"" + key.key() + "\", expected no such key for the method " + method.name);
     const auto named = j.find("part");
     const std::size_t part = named ? scene.values().word(*named, method.parts) : 0;
-    const Three edges = three(j, "edges", "the edges [E1: B to C, E2: C to A, E3: A to B]", scene);
+    const Three edges = edges_of(j, scene);
     // A part of the construction keeps no promises.
     const auto examined = [&](Patch patch, const TriangleCurves& c) {
         BuiltSurface s(std::move(patch));

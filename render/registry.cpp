@@ -46,7 +46,7 @@ std::span<const SceneType<BuiltSurface>> surface_types() {
         {"network", {"a", "b", "cross", "twist", "part", "repair"}, build_network},
         {"triangle", {"points"}, build_triangle},
         {"bezier_triangle", {"degree", "points", "weights"}, build_bezier_triangle},
-        {"coons_triangle", {"edges", "method", "H", "form", "projectors", "cross", "normals", "part", "repair"}, build_coons_triangle},
+        {"coons_triangle", {"edges", "loop", "method", "H", "form", "projectors", "cross", "normals", "part", "repair"}, build_coons_triangle},
         {"composite", {"members"}, build_composite},
         {"transform", {"surface", "matrix", "mirror", "scale", "rotate", "translate"}, build_transformed_surface},
         {"file", {"path"}, build_file},

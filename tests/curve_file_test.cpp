@@ -323,6 +323,31 @@ TEST(CurveFiles, LoopsInAnyOrderAndDirectionSpanOneCoonsPatch) {
     write_all(t / "scene.json", R"({ "isoparm": 1, "surfaces": { "Q": { "type": "coons", "loop": { "type": "file", "path": "q.lop" }, "repair": false } } })");
     fails(around, "expected \"loop\" without \"repair\"", 65);
 }
+TEST(CurveFiles, LoopsOfThreeInAnyOrderAndDirectionSpanOneTriangle) {
+    const TemporaryFolder t;
+    const std::string A = "0 0 0", B = "1 0 0", C = "0 1 1";
+    const auto scene = [&](const std::string& keys) { write_all(t / "scene.json", R"({ "isoparm": 1, "surfaces": { "T": { "type": "coons_triangle", "loop": { "type": "file", "path": "t.lop" }, )" + keys + " } } }"); };
+    scene(R"("method": "side_vertex")");
+    for (const auto& sides : {std::vector<std::array<std::string, 2>>{{A, B}, {B, C}, {C, A}}, {{C, A}, {B, A}, {B, C}}, {{A, C}, {A, B}, {B, C}}}) {
+        write_all(t / "t.lop", loop_of(sides));
+        const Outcome o = run("check scene.json --surface T --json", t.path());
+        EXPECT_EQ(o.code, 0) << o.err << o.out;
+        EXPECT_TRUE(contains(o.out, "\"compatible\": true")) << o.out;
+        // A plane, z = y: whichever vertex is which.
+        const Outcome p = run("eval scene.json --surface T --at 0.25,0.25 --json", t.path());
+        EXPECT_TRUE(contains(p.out, "0.25, 0.25]") || contains(p.out, "0.5, 0.5]")) << p.out;
+    }
+    const auto fails = [&](const std::string& keys, const std::string& message) {
+        scene(keys);
+        const Outcome o = run("info scene.json", t.path());
+        EXPECT_EQ(o.code, 65) << o.err;
+        EXPECT_TRUE(contains(o.err, message) && contains(o.err, "scene.json:1:")) << o.err;
+    };
+    fails(R"("method": "side_vertex", "repair": true)", "expected \"loop\" without \"repair\"");
+    fails(R"("method": "bbg_c1")", "expected no such key for the method bbg_c1");
+    write_all(t / "t.lop", loop_of({{A, B}, {B, C}, {C, "0 0.125 0"}}));
+    fails(R"("method": "bbg_symmetric")", "0.125");
+}
 TEST(CurveFiles, WrongOnesAreErrorsOfTheScene) {
     const TemporaryFolder t;
     std::filesystem::create_directory(t / "folder.lop");

@@ -32,9 +32,13 @@ public:
         for (std::size_t at = 0; at < text_.size();) {
             const std::size_t end = std::min(text_.find('\n', at), text_.size());
             ++line_;
-            split(std::string_view(text_).substr(at, end - at));
-            if (!tokens_.empty()) statement();
+            std::string_view line = std::string_view(text_).substr(at, end - at);
+            const bool goes_on = continues(line);
+            split(line);
             at = end + 1;
+            if (goes_on && at < text_.size()) continue;
+            if (!tokens_.empty()) statement();
+            tokens_.clear();
         }
         finish();
         return std::move(cage_);
@@ -46,10 +50,19 @@ private:
                     ", expected " + expected);
     }
 
+    static constexpr std::string_view space = " \t\r\v\f";
+
+    /// A backslash at the end, outside of comments, joins the next line to this one. It is cut off.
+    static bool continues(std::string_view& line) {
+        const std::size_t last = line.find_last_not_of(space);
+        if (last == line.npos || line[last] != '\\' || line.find('#') != line.npos) return false;
+        line = line.substr(0, last);
+        return true;
+    }
+
+    /// Adds the tokens of a line to those of the statement.
     void split(std::string_view line) {
-        tokens_.clear();
         next_ = 1;
-        constexpr std::string_view space = " \t\r\v\f";
         std::size_t at = 0;
         while ((at = line.find_first_not_of(space, at)) != line.npos && line[at] != '#') {
             const std::size_t end = std::min(line.find_first_of(space, at), line.size());

@@ -18,7 +18,10 @@ HermiteNetwork network_of(const HermiteData& data) {
 }
 }  // namespace
 
-Patch make_coons_hermite(const HermiteData& data, Twist twist, Part part) { return make_patch(hermite_surface(network_of(data), twist, true, part)); }
+Patch make_coons_hermite(const HermiteData& data, Twist twist, Part part) {
+    const HermiteSurface s = hermite_surface(network_of(data), twist, true, part);
+    return with_edge_forms(s, make_patch(s));
+}
 
 Patch gregory_on_edges(const HermiteData& data, bool of_f, double& slack) {
     return make_patch(on_edges(hermite_surface(network_of(data), Twist::gregory, true, Part::sum), of_f, &slack));

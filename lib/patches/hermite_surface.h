@@ -44,6 +44,9 @@ struct HermiteSurface {
     }
 };
 
+/// `model`: the surface as a patch. The same with exact forms at the edges of its cells, where the curves are polynomials (exact_parts.h).
+Patch with_edge_forms(HermiteSurface surface, Patch model);
+
 /// Curves and cross derivatives in the order of a HermiteBasis, over [0,n] and [0,m].
 struct HermiteNetwork {
     std::vector<Curve> f;                                         // f_2i = x(i,.), f_2i+1 = x_u(i,.), i = 0..m

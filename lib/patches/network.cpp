@@ -52,7 +52,8 @@ Patch make(const Network& net, const CrossDerivatives& cross, Twist twist, bool 
     h.name = [](char family, std::size_t k) {
         return name(family == 'f' ? (k % 2 ? "A" : "a") : (k % 2 ? "B" : "b"), k / 2);
     };
-    return make_patch(hermite_surface(h, twist, tangents_agree, part));
+    const HermiteSurface s = hermite_surface(h, twist, tangents_agree, part);
+    return with_edge_forms(s, make_patch(s));
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ public:
     Vec3<Interval> enclose_points(const Box& box) const override { return map_.point(patch_.enclose_points(box)); }
     std::vector<Polynomial> exact_cell(std::size_t i, std::size_t j) const override {
         const auto x = patch_.exact_cell(i, j);
-        if (x.empty()) return {};
+        if (x.size() < 3) return x;  // nothing, or parts
         auto y = x;  // a denominator stays
         for (int axis = 0; axis < 3; ++axis) {
             y[axis] = (x.size() == 4 ? x[3] : Polynomial(1)) * Polynomial(map_.m[axis][3]);

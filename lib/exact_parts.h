@@ -1,0 +1,24 @@
+// exact_parts.h -- what Patch::exact_cell() says of surfaces that have no exact form over a whole cell, but one where an edge needs it.
+//
+// Such an answer has one or two polynomials, which mean nothing in themselves; a form has three, or four with the denominator.
+#pragma once
+#include <bit>
+#include <vector>
+
+#include "patch.h"
+
+namespace isoparm {
+
+/// The limit surface over an irregular face of a cage has one cell, and dyadic parts, smaller and smaller ones towards extraordinary vertices. They are
+/// numbered like a heap along u and along v: the part [k, k+1] x [l, l+1] / 2^level (of the triangle: the one with its right angle at (k,l)) has
+/// exact_cell(dyadic_number(level, k), dyadic_number(level, l)), which has parts again, or is the form there, or empty: around an extraordinary vertex, or
+/// where a larger part has the form already.
+inline bool has_dyadic_parts(const std::vector<Polynomial>& form) { return form.size() == 1; }
+inline std::size_t dyadic_number(int level, std::size_t k) { return (std::size_t(1) << level) - 1 + k; }
+inline int dyadic_level(std::size_t number) { return static_cast<int>(std::bit_width(number + 1)) - 1; }
+
+/// Gregory's surfaces have, for each edge of a cell, a form with the same position, first and second derivatives on the inside of that edge: exact_cell(i + (k + 1) m, j), m the
+/// number of cells along u, k as in Patch::edge_point.
+inline bool has_edge_forms(const std::vector<Polynomial>& form) { return form.size() == 2; }
+
+}  // namespace isoparm
