@@ -40,16 +40,16 @@ FigureLighting::FigureLighting(const Camera& camera, const std::optional<Ground>
         for (int k = 0; k < kSteps; ++k) sky_on_ground_ += (1.0 / (kSteps * kSteps)) * studio_.sky(frame.to_world(on_hemisphere({(i + 0.5) / kSteps, (k + 0.5) / kSteps})));
 }
 
-void FigureLighting::shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const {
+void FigureLighting::shade(const TracedScene& scene, const Surfel* surfels, int n, Color* out) const {
     Ray to_key[EmbreeScene::packet], to_sky[EmbreeScene::packet];
     double key_light[EmbreeScene::packet], sky_light[EmbreeScene::packet];
     std::uint32_t lit = 0;
     for (int i = 0; i < n; ++i) {
         const Surfel& s = surfels[i];
-        const Vec2 l = on_disc(sampler(s.sample, s.dimension));
+        const Vec2 l = on_disc((*s.sampler)(s.sample, s.dimension));
         to_key[i] = {s.origin, normalized(studio_.key + (Studio::key_radius * l.x) * key_.x + (Studio::key_radius * l.y) * key_.y)};
         if (dot(s.normal, to_key[i].direction) > 0) lit |= 1u << i;
-        to_sky[i] = {s.origin, normalized(LocalFrame(s.normal).to_world(on_hemisphere(sampler(s.sample, s.dimension + 1))))};
+        to_sky[i] = {s.origin, normalized(LocalFrame(s.normal).to_world(on_hemisphere((*s.sampler)(s.sample, s.dimension + 1))))};
     }
     scene.embree->transmittance(to_key, n, lit, key_light);
     scene.embree->transmittance(to_sky, n, (1u << n) - 1, sky_light);
