@@ -40,7 +40,7 @@ struct PathLighting::Batch {
     /// `sheet`: of those that a ray passes.
     Vec2 random(const Path& p, Dimension d, int sheet = 0) const {
         constexpr int apart = 1 << 16;  // dimensions: more than all layers and bounces of a pixel use
-        return (*p.at.sampler)(p.at.sample, p.at.dimension + kDimensions * bounce + d + apart * sheet);
+        return (*p.at.sample.sampler)(p.at.sample.number, p.at.dimension + kDimensions * bounce + d + apart * sheet);
     }
     void drop_ended(Color* out) {
         int kept = 0;
@@ -168,7 +168,7 @@ void PathLighting::follow(Batch& batch) const {
     surfels_at(batch.scene, camera_, met_by, met, count, surfels);
     for (int k = 0; k < count; ++k) {
         Surfel& at = batch.paths[who[k]].at;
-        surfels[k].sampler = at.sampler, surfels[k].sample = at.sample, surfels[k].dimension = at.dimension;
+        surfels[k].sample = at.sample, surfels[k].dimension = at.dimension;
         at = surfels[k];
     }
 }

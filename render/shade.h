@@ -4,7 +4,7 @@
 #include "embree_scene.h"
 #include "local_frame.h"
 #include "light.h"
-#include "sampler.h"
+#include "sample_points.h"
 #include "studio.h"
 
 namespace isoparm {
@@ -24,8 +24,8 @@ struct Surfel {
     const Material* material = nullptr;
     Color ink;  // of the lines drawn on it, unlit
     double ink_cover = 0;
-    const PixelSampler* sampler = nullptr;  // of the pixel; where it is lit
-    int sample = 0, dimension = 0;          // of it: the first dimension that is its own
+    SampleOf sample;    // that it is lit for
+    int dimension = 0;  // of its sampler: the first that is its own
 };
 
 struct TracedScene;

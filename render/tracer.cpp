@@ -15,17 +15,25 @@ void Tracer::sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* sp
     while (sum.seen < to && !(stop && stop())) {
         const int first = sum.seen, n = std::min(EmbreeScene::packet, to - first);
         Ray rays[EmbreeScene::packet];
-        From from[EmbreeScene::packet];
+        SampleOf of[EmbreeScene::packet];
+        Vec2 pixel[EmbreeScene::packet];
         Rgba seen[EmbreeScene::packet];
-        for (int i = 0; i < n; ++i) rays[i] = ray(x, y, from[i] = {&sampler, first + i});
-        trace(rays, from, n, seen);
+        for (int i = 0; i < n; ++i) of[i] = {&sampler, first + i}, pixel[i] = {double(x), double(y)};
+        this->rays(pixel, of, n, rays);
+        trace(rays, of, n, seen);
         add(seen, n, counts, sum, spread);
     }
 }
 
-Ray Tracer::ray(int x, int y, const From& from) const {
-    const Vec2 at = filter_((*from.sampler)(from.sample, 0));
-    return camera_.ray(x + 0.5 + at.x, y + 0.5 + at.y);
+void Tracer::rays(const Vec2* pixel, const SampleOf* of, int n, Ray* out) const {
+    constexpr int kFirst[EmbreeScene::packet] = {};
+    Vec2 at[EmbreeScene::packet];
+    sample_points(of, kFirst, n, at);
+    for (int i = 0; i < n; ++i) {
+        const Vec2 aside = filter_(at[i]);
+        at[i] = {pixel[i].x + 0.5 + aside.x, pixel[i].y + 0.5 + aside.y};
+    }
+    camera_rays(camera_, at, n, out);
 }
 
 Tracer::Block Tracer::block() const {
@@ -36,15 +44,17 @@ Tracer::Block Tracer::block() const {
 void Tracer::sample_block(int x, int y, Rgba* seen) const {
     std::array<std::optional<PixelSampler>, EmbreeScene::packet> samplers;
     Ray rays[EmbreeScene::packet];
-    From from[EmbreeScene::packet];
+    SampleOf of[EmbreeScene::packet];
+    Vec2 pixel[EmbreeScene::packet];
     const Block size = block();
     int n = 0;
     for (int k = 0; k < size.width * size.height; ++k) {
         const int px = x + k % size.width, py = y + k / size.width;
         samplers[static_cast<std::size_t>(k)].emplace(px, py, samples_);
-        for (int i = 0; i < samples_; ++i, ++n) rays[n] = ray(px, py, from[n] = {&*samplers[static_cast<std::size_t>(k)], i});
+        for (int i = 0; i < samples_; ++i, ++n) of[n] = {&*samplers[static_cast<std::size_t>(k)], i}, pixel[n] = {double(px), double(py)};
     }
-    trace(rays, from, n, seen);
+    this->rays(pixel, of, n, rays);
+    trace(rays, of, n, seen);
 }
 
 void Tracer::add(Rgba* seen, int n, bool counts, PixelSum& sum, Spread* spread) const {
@@ -76,13 +86,13 @@ Rgba Tracer::finished(Rgba pixel) const {
 Rgba Tracer::glance(double x, double y) const {
     const PixelSampler sampler(static_cast<int>(x), static_cast<int>(y), samples_);
     const Ray ray = camera_.ray(x, y);
-    const From from{&sampler, 0};
+    const SampleOf of{&sampler, 0};
     Rgba seen;
-    trace(&ray, &from, 1, &seen);
+    trace(&ray, &of, 1, &seen);
     return finished(seen);
 }
 
-void Tracer::trace(const Ray* rays, const From* from, int n, Rgba* seen) const {
+void Tracer::trace(const Ray* rays, const SampleOf* of, int n, Rgba* seen) const {
     std::vector<Met> met;
     if (scene_.embree->translucent()) {
         std::vector<Hit> hits;
@@ -103,7 +113,7 @@ void Tracer::trace(const Ray* rays, const From* from, int n, Rgba* seen) const {
             else if (hits[i].found()) met.push_back({hits[i], i, 0});
         }
     }
-    add_light(rays, from, met, seen);
+    add_light(rays, of, met, seen);
     for (int i = 0; i < n; ++i)
         if (const auto behind = lighting_.backdrop(rays[i].direction)) seen[i].add_behind(*behind, 1);
 }
@@ -143,7 +153,7 @@ void Tracer::surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const
 }
 
 /// Layers of a ray come from front to back.
-void Tracer::add_light(const Ray* rays, const From* from, const std::vector<Met>& met, Rgba* seen) const {
+void Tracer::add_light(const Ray* rays, const SampleOf* of, const std::vector<Met>& met, Rgba* seen) const {
     for (std::size_t begin = 0; begin < met.size(); begin += EmbreeScene::packet) {
         const int count = static_cast<int>(std::min<std::size_t>(EmbreeScene::packet, met.size() - begin));
         Ray by[EmbreeScene::packet];
@@ -153,7 +163,7 @@ void Tracer::add_light(const Ray* rays, const From* from, const std::vector<Met>
         if (ground_) this->surfels(by, hits, count, surfels);
         else surfels_at(scene_, camera_, by, hits, count, surfels);
         for (int k = 0; k < count; ++k) {
-            surfels[k].sampler = from[met[begin + k].ray].sampler, surfels[k].sample = from[met[begin + k].ray].sample;
+            surfels[k].sample = of[met[begin + k].ray];
             surfels[k].dimension = 1 + lighting_.dimensions() * met[begin + k].layer;
         }
         Color light[EmbreeScene::packet];

@@ -44,24 +44,20 @@ public:
     Rgba glance(double x, double y) const;
 
 private:
-    /// A ray from the eye: which sample of which pixel it is.
-    struct From {
-        const PixelSampler* sampler;
-        int sample;
-    };
     /// What a ray of the pixel met, and as which of its layers; a hit that is none is of the ground, at its distance.
     struct Met {
         Hit hit;
         int ray, layer;
     };
-    Ray ray(int x, int y, const From& from) const;
+    /// Through the samples' places in the pixels whose corners are given.
+    void rays(const Vec2* pixel, const SampleOf* of, int n, Ray* out) const;
     Rgba finished(Rgba pixel) const;
     /// What a ray meets of the ground before `end`.
     std::optional<Hit> ground_hit(const Ray& ray, double end) const;
     Surfel ground_surfel(const Ray& ray, double distance) const;
     void surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const;
-    void trace(const Ray* rays, const From* from, int n, Rgba* seen) const;
-    void add_light(const Ray* rays, const From* from, const std::vector<Met>& met, Rgba* seen) const;
+    void trace(const Ray* rays, const SampleOf* of, int n, Rgba* seen) const;
+    void add_light(const Ray* rays, const SampleOf* of, const std::vector<Met>& met, Rgba* seen) const;
 
     const TracedScene& scene_;
     const Camera& camera_;
