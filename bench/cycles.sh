@@ -13,7 +13,9 @@ if ! command -v blender >/dev/null; then
 fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-cp "$here"/../scenes/{teapot.json,teapot.bv} "$folder"
+# The surface alone, without the lines on it, which the other does not draw, and its camera.
+sed -e 's/"boundary": true, "radius": 0.012, "isolines": {[^}]*}/"boundary": false/' -e 's/"eye": \[[^]]*\]/"eye": [4.93, -8.8, 4.91]/' -e 's/, "fit": true//' "$here"/../scenes/teapot.json >"$folder"/teapot.json
+cp "$here"/../scenes/teapot.bv "$folder"
 cd "$folder"
 "$program" tessellate teapot.json -o teapot.obj --quiet
 
@@ -43,8 +45,8 @@ def looking(name, data, eye, target):
     return thing
 
 camera = bpy.data.cameras.new("camera")
-camera.angle = math.radians(37)
-scene.camera = looking("camera", camera, (4.5, -8, 4.6), (0.2, 0, 1.5))
+camera.angle = math.radians(36.8)
+scene.camera = looking("camera", camera, (4.93, -8.8, 4.91), (0.2, 0, 1.5))
 key = bpy.data.lights.new("key", "SUN")
 key.energy, key.angle = 2, math.radians(15)
 looking("key", key, (-20, -30, 40), (0, 0, 0))

@@ -13,6 +13,9 @@
 namespace isoparm {
 namespace {
 
+/// The part of the samples that goes to pixels by their radiance; the others go by what is above the mean (Karlik et al., MIS compensation, SIGGRAPH Asia
+/// 2019): the even rest of the sky is found by the directions that surfaces choose anyway.
+constexpr double kEven = 0.25;
 constexpr double kPi = std::numbers::pi;
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 25;  // 8192 x 4096
 constexpr float kMostRadiance = 1e12f;
@@ -37,16 +40,31 @@ EnvironmentImage::EnvironmentImage(int width, int height, std::vector<float> rgb
     const auto across = static_cast<std::size_t>(width_);
     row_.assign(static_cast<std::size_t>(height_) + 1, 0);
     in_row_.assign((across + 1) * static_cast<std::size_t>(height_), 0);
+    double all = 0;
     for (int y = 0; y < height_; ++y) {
         double* const sums = &in_row_[(across + 1) * static_cast<std::size_t>(y)];
-        for (int x = 0; x < width_; ++x) sums[x + 1] = sums[x] + 0.125 * column(x - 1, y) + 0.75 * column(x, y) + 0.125 * column(x + 1, y);  // the mean of what is interpolated
+        for (int x = 0; x < width_; ++x) {
+            sums[x + 1] = 0.125 * column(x - 1, y) + 0.75 * column(x, y) + 0.125 * column(x + 1, y);  // the mean of what is interpolated
+            all += sums[x + 1] * (row_top(y) - row_top(y + 1));
+        }
+    }
+    const double mean = all / (2 * width_);
+    brightest_sky_ = 16 * mean;
+    double above = 0;  // the mean
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x) above += std::max(0.0, in_row_[(across + 1) * static_cast<std::size_t>(y) + static_cast<std::size_t>(x) + 1] - mean) * (row_top(y) - row_top(y + 1));
+    for (int y = 0; y < height_; ++y) {
+        double* const sums = &in_row_[(across + 1) * static_cast<std::size_t>(y)];
+        for (int x = 0; x < width_; ++x) {
+            const double here = sums[x + 1];
+            sums[x + 1] = sums[x] + (above > 1e-9 * all ? kEven * here / all + (1 - kEven) * std::max(0.0, here - mean) / above : here);
+        }
         row_[static_cast<std::size_t>(y) + 1] = row_[static_cast<std::size_t>(y)] + sums[width_] * (row_top(y) - row_top(y + 1));
         if (sums[width_] > 0)
             for (int x = 0; x <= width_; ++x) sums[x] /= sums[width_];
     }
-    brightest_sky_ = 16 * row_.back() / (2 * width_);
-    if (const double all = row_.back(); all > 0)
-        for (double& r : row_) r /= all;
+    if (const double last = row_.back(); last > 0)
+        for (double& r : row_) r /= last;
 }
 
 double EnvironmentImage::row_top(int row) const { return std::cos(kPi * row / height_); }

@@ -357,7 +357,7 @@ TEST(Exact, EveryInstructionSetGivesTheSameBits) {
             AimPacket aim{};
             kernel.aim(leaf, packet, 1e-9, farthest, RayPacket::lanes, aim);
             NewtonPacket newton{};
-            kernel.begin(leaf, aim, RayPacket::lanes, newton);
+            kernel.begin(leaf, packet, aim, RayPacket::lanes, newton);
             for (int axis = 0; axis < 3; ++axis)
                 for (int i = 0; i < RayPacket::lanes; ++i)
                     newton.frame[axis][i] = leaf.s[axis] + newton.cx[i] * leaf.a[axis] + newton.cy[i] * leaf.b[axis], newton.frame[3 + axis][i] = 2 * leaf.a[axis],
