@@ -2,7 +2,7 @@
 # isoparm beside Blender's Cycles on the teapot, from the start of the process to the PNG, in turn: bench/cycles.sh [PROGRAM] [REPETITIONS]
 # Needs blender (Debian); without it, it says so and ends. 1024 x 768 pixels, 64 samples, on the processor: the same triangles and camera, a light
 # with soft shadows, and a sky that what is near hides (ambient occlusion), without further bounces. Cycles neither denoises nor stops
-# early. Prints medians: wall seconds, processor seconds, MiB; and what Cycles itself took without Blender's start and reading.
+# early. Both take 64 samples of every pixel. Prints medians: wall seconds, processor seconds, MiB; and what Cycles itself took without Blender's start and reading.
 set -euo pipefail
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 program=$(realpath "${1:-$here/../build/release/isoparm}")
