@@ -8,7 +8,9 @@ program=$(realpath "${1:-$here/../build/release/isoparm}")
 repetitions=${2:-5}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-cp "$here"/../scenes/{teapot.json,teapot.bv} "$folder"
+# The surface alone, without the lines on it, which the other does not draw, and its camera.
+sed -e 's/"boundary": true, "radius": 0.012, "isolines": {[^}]*}/"boundary": false/' -e 's/"eye": \[[^]]*\]/"eye": [4.93, -8.8, 4.91]/' -e 's/, "fit": true//' "$here"/../scenes/teapot.json >"$folder"/teapot.json
+cp "$here"/../scenes/teapot.bv "$folder"
 cd "$folder"
 
 # POV-Ray is left-handed: y and z change places.
@@ -17,7 +19,7 @@ cd "$folder"
 #version 3.7;
 global_settings { assumed_gamma 1 }
 background { color rgb 1 }
-camera { location <4.5, 4.6, -8> look_at <0.2, 1.5, 0> up y right x*image_width/image_height angle 37 }
+camera { location <4.93, 4.91, -8.8> look_at <0.2, 1.5, 0> up y right x*image_width/image_height angle 36.8 }
 light_source { <-20, 40, -30> color rgb 1 }
 #declare Look = texture { pigment { color rgb <0.7, 0.58, 0.39> } finish { ambient 0.3 diffuse 0.7 specular 0.2 } }
 POV

@@ -12,105 +12,16 @@
 #include <string>
 #include <tuple>
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
+#include "embree_rays.h"
 
 namespace isoparm {
 namespace {
 
-/// Subnormal numbers slow traversal down; they are flushed while this lives, on this thread only.
-class FlushSubnormals {
-#if defined(__SSE__)
-public:
-    FlushSubnormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040); }  // FTZ | DAZ
-    ~FlushSubnormals() { _mm_setcsr(before_); }
-
-private:
-    unsigned before_;
-#else
-public:
-    FlushSubnormals() {}
-#endif
-};
-
-struct Geometry {
-    std::uint32_t id = 0;
-    std::uint32_t mesh = 0;  // number of the mesh it is a part of; meaningless for others
-    float opacity = 1;
-    bool solid = false;  // a tube or ball: counts once however often a ray passes through its skin
-    const ExactPatch* patch = nullptr;  // rays meet it itself; mesh is then its group
-    const Point* centre = nullptr;
-    const double* radius = nullptr;  // of the scene, once it is complete
-};
-
-/// What queries tell the callbacks of patches, which compute in double.
-/// There is one of each for every ray of the query.
-struct PatchRays {
-    const RayPacket* rays = nullptr;
-    Hit* nearest = nullptr;               // of patches
-    bool* undecided = nullptr;
-    std::vector<Hit>* layers = nullptr;   // where hits of what lets light through go; otherwise they count as any other
-    double* transmittance = nullptr;      // of a single shadow ray
-};
-
-// ---- Embree 3 and 4 ask the same questions with different words ---------------------------------------------------
-#if RTC_VERSION_MAJOR >= 4
-using Context = RTCRayQueryContext;
-struct Query {
-    Context context;  // first: filters find the query by its address
-    PatchRays* patches = nullptr;
-    RTCIntersectArguments nearest;
-    RTCOccludedArguments any;
-    explicit Query(bool coherent = false) {
-        rtcInitRayQueryContext(&context);
-        rtcInitIntersectArguments(&nearest);
-        rtcInitOccludedArguments(&any);
-        nearest.context = any.context = &context;
-        if (coherent) nearest.flags = any.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-    }
-};
-void intersect_1(RTCScene s, Query& q, RTCRayHit* r) { rtcIntersect1(s, r, &q.nearest); }
-void intersect_16(const int* valid, RTCScene s, Query& q, RTCRayHit16* r) { rtcIntersect16(valid, s, r, &q.nearest); }
-void occluded_1(RTCScene s, Query& q, RTCRay* r) { rtcOccluded1(s, r, &q.any); }
-void occluded_16(const int* valid, RTCScene s, Query& q, RTCRay16* r) { rtcOccluded16(valid, s, r, &q.any); }
-#else
-using Context = RTCIntersectContext;
-struct Query {
-    Context context;
-    PatchRays* patches = nullptr;
-    explicit Query(bool coherent = false) {
-        rtcInitIntersectContext(&context);
-        if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    }
-};
-void intersect_1(RTCScene s, Query& q, RTCRayHit* r) { rtcIntersect1(s, &q.context, r); }
-void intersect_16(const int* valid, RTCScene s, Query& q, RTCRayHit16* r) { rtcIntersect16(valid, s, &q.context, r); }
-void occluded_1(RTCScene s, Query& q, RTCRay* r) { rtcOccluded1(s, &q.context, r); }
-void occluded_16(const int* valid, RTCScene s, Query& q, RTCRay16* r) { rtcOccluded16(valid, s, &q.context, r); }
-#endif
-
 struct LayerQuery : Query {
     std::vector<Hit>* hits = nullptr;
 };
-struct ShadowQuery : Query {
-    EmbreeScene::Shadows shadows = EmbreeScene::Shadows::light;
-    double transmittance = 1;
-    std::vector<std::uint32_t> solids;
-};
 
-double sheet_lets_through(const Geometry& geometry, EmbreeScene::Shadows shadows) {
-    const double o = geometry.opacity;
-    return shadows == EmbreeScene::Shadows::physical ? 1 - o : 1 - o * o * o;
-}
-
-// The two filters refuse every hit of geometry that lets light through, so that Embree goes on to the next; they are
-// called for single rays only.
+/// Refuses every hit of geometry that lets light through, so that Embree goes on to the next, and remembers it; called for single rays only.
 void remember_layer(const RTCFilterFunctionNArguments* a) {
     auto& query = static_cast<LayerQuery&>(*reinterpret_cast<Query*>(a->context));
     Hit h;
@@ -120,129 +31,8 @@ void remember_layer(const RTCFilterFunctionNArguments* a) {
     h.u = RTCHitN_u(a->hit, a->N, 0);
     h.v = RTCHitN_v(a->hit, a->N, 0);
     h.normal = {RTCHitN_Ng_x(a->hit, a->N, 0), RTCHitN_Ng_y(a->hit, a->N, 0), RTCHitN_Ng_z(a->hit, a->N, 0)};
-    query.hits->push_back(h);
+    guarded(query, [&] { query.hits->push_back(h); });
     a->valid[0] = 0;
-}
-
-void dim_light(const RTCFilterFunctionNArguments* a) {
-    auto& query = static_cast<ShadowQuery&>(*reinterpret_cast<Query*>(a->context));
-    const auto& geometry = *static_cast<const Geometry*>(a->geometryUserPtr);
-    a->valid[0] = 0;
-    if (geometry.solid) {
-        if (std::find(query.solids.begin(), query.solids.end(), geometry.id) != query.solids.end()) return;
-        query.solids.push_back(geometry.id);
-        query.transmittance *= 1 - static_cast<double>(geometry.opacity);
-        return;
-    }
-    query.transmittance *= sheet_lets_through(geometry, query.shadows);
-}
-
-/// Normal numbers again, for proofs.
-class KeepSubnormals {
-#if defined(__SSE__)
-public:
-    KeepSubnormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ & ~0x8040u); }
-    ~KeepSubnormals() { _mm_setcsr(before_); }
-
-private:
-    unsigned before_;
-#else
-public:
-    KeepSubnormals() {}
-#endif
-};
-
-/// A float that is not below x >= 0, and a little more: what is as near as x must not be passed over.
-float far_enough(double x) { return static_cast<float>(x) * (1 + 0x1p-21f); }
-
-/// What rays of a callback meet in one leaf of a patch: use(lane of the callback, ray of the query, roots).
-template <class Use> void meet_leaf(const int* valid, RTCRayN* rays, unsigned n, const ExactPatch& patch, unsigned leaf, PatchRays& query, Use use) {
-    int lane[EmbreeScene::packet], ray[EmbreeScene::packet], place[EmbreeScene::packet], count = 0;  // place: in what patch.meet() gets
-    double farthest[EmbreeScene::packet] = {};
-    bool in_place = n == EmbreeScene::packet;  // lanes are those of the query
-    for (unsigned i = 0; i < n; ++i) {
-        if (!valid[i]) continue;
-        lane[count] = static_cast<int>(i), ray[count] = static_cast<int>(RTCRayN_id(rays, n, i));
-        in_place = in_place && ray[count] == lane[count];
-        ++count;
-    }
-    if (count == 0) return;
-    in_place = in_place && count > EmbreeScene::packet / 2;
-    RayPacket some;
-    std::uint32_t active = 0;
-    for (int k = 0; k < count; ++k) {
-        place[k] = in_place ? lane[k] : k;
-        active |= 1u << place[k];
-        farthest[place[k]] = RTCRayN_tfar(rays, n, static_cast<unsigned>(lane[k]));
-        if (!in_place) some.put(k, query.rays->at(ray[k]));
-    }
-    if (!in_place)
-        for (int k = count; k % RayPacket::group != 0; ++k) some.put(k, query.rays->at(ray[0]));
-    Roots roots[EmbreeScene::packet];
-    {
-        const KeepSubnormals keep;
-        patch.meet(leaf, in_place ? *query.rays : some, farthest, in_place ? EmbreeScene::packet : count, active, roots);
-    }
-    for (int k = 0; k < count; ++k) {
-        const Roots& r = roots[place[k]];
-        if (r.undecided) query.undecided[ray[k]] = true;
-        if (r.count > 0) use(static_cast<unsigned>(lane[k]), static_cast<unsigned>(ray[k]), r);
-    }
-}
-
-Hit hit_of(const Root& root, std::uint32_t geometry, std::uint32_t leaf) {
-    Hit h;
-    h.distance = root.distance, h.u = root.u, h.v = root.v, h.error = root.error;
-    h.geometry = geometry, h.primitive = leaf;
-    return h;
-}
-bool nearer(const Hit& a, const Hit& b) { return std::tie(a.distance, a.geometry, a.primitive) < std::tie(b.distance, b.geometry, b.primitive); }
-
-void bounds_of_leaf(const RTCBoundsFunctionArguments* a) {
-    const auto& geometry = *static_cast<const Geometry*>(a->geometryUserPtr);
-    // Rays are rounded to float32 where they enter the scene, by half a unit in the last place of 1.01 radii and of their direction over 2.02
-    // radii; so is the box. Embree's own slab test is conservative (RTC_SCENE_FLAG_ROBUST).
-    const double pad = 0x1p-21 * *geometry.radius;
-    const Bounds box = geometry.patch->box(a->primID);
-    const Point low = box.low - *geometry.centre, high = box.high - *geometry.centre;
-    RTCBounds& out = *a->bounds_o;
-    out.lower_x = static_cast<float>(low.x - pad), out.lower_y = static_cast<float>(low.y - pad), out.lower_z = static_cast<float>(low.z - pad);
-    out.upper_x = static_cast<float>(high.x + pad), out.upper_y = static_cast<float>(high.y + pad), out.upper_z = static_cast<float>(high.z + pad);
-    out.align0 = out.align1 = 0;
-}
-
-void intersect_leaf(const RTCIntersectFunctionNArguments* a) {
-    auto& query = *reinterpret_cast<Query*>(a->context);
-    const auto& geometry = *static_cast<const Geometry*>(a->geometryUserPtr);
-    RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
-    RTCHitN* hits = RTCRayHitN_HitN(a->rayhit, a->N);
-    meet_leaf(a->valid, rays, a->N, *geometry.patch, a->primID, *query.patches, [&](unsigned lane, unsigned ray, const Roots& roots) {
-        for (int r = 0; r < roots.count; ++r) {
-            const Hit hit = hit_of(roots.root[r], geometry.id, a->primID);
-            if (geometry.opacity < 1 && query.patches->layers) {
-                query.patches->layers->push_back(hit);
-                continue;
-            }
-            Hit& nearest = query.patches->nearest[ray];
-            float& far = RTCRayN_tfar(rays, a->N, lane);
-            if (hit.distance > static_cast<double>(far) || !nearer(hit, nearest)) continue;
-            nearest = hit;
-            far = std::min(far, far_enough(hit.distance));
-            RTCHitN_geomID(hits, a->N, lane) = geometry.id;
-            RTCHitN_primID(hits, a->N, lane) = a->primID;
-        }
-    });
-}
-
-void shadow_of_leaf(const RTCOccludedFunctionNArguments* a) {
-    auto& query = *reinterpret_cast<Query*>(a->context);
-    const auto& geometry = *static_cast<const Geometry*>(a->geometryUserPtr);
-    meet_leaf(a->valid, a->ray, a->N, *geometry.patch, a->primID, *query.patches, [&](unsigned lane, unsigned, const Roots& roots) {
-        for (int r = 0; r < roots.count; ++r) {
-            if (geometry.opacity < 1) *query.patches->transmittance *= sheet_lets_through(geometry, static_cast<ShadowQuery&>(query).shadows);
-            else RTCRayN_tfar(a->ray, a->N, lane) = -std::numeric_limits<float>::infinity();
-        }
-    });
 }
 
 }  // namespace
@@ -284,7 +74,7 @@ struct EmbreeScene::State {
         if (opacity < 1) {
             translucent = true;
             rtcSetGeometryIntersectFilterFunction(g, remember_layer);
-            rtcSetGeometryOccludedFilterFunction(g, dim_light);
+            rtcSetGeometryOccludedFilterFunction(g, remember_layer);
         }
         rtcCommitGeometry(g);
         data.id = rtcAttachGeometry(scene, g);
@@ -324,21 +114,39 @@ struct EmbreeScene::State {
         return !ga.solid && !gb.solid && ga.mesh == gb.mesh && b.distance - a.distance < 1e-6 * radius &&
                near_edge(a) && near_edge(b);
     }
-    double transmittance(const Ray& ray, Shadows shadows) const {
-        ShadowQuery query;
-        query.shadows = shadows;
+    /// In order, each once: tubes and balls however often a ray passes their skin, others where leaves or triangles meet.
+    void tidy(std::vector<Hit>& hits) const {
+        std::sort(hits.begin(), hits.end(), nearer);
+        hits.erase(std::unique(hits.begin(), hits.end(), [&](const Hit& a, const Hit& b) { return same_place(a, b); }), hits.end());
+        for (std::size_t i = 0; i < hits.size(); ++i)
+            if (geometries[hits[i].geometry].solid)
+                hits.erase(std::remove_if(hits.begin() + static_cast<std::ptrdiff_t>(i) + 1, hits.end(), [&](const Hit& h) { return h.geometry == hits[i].geometry; }), hits.end());
+    }
+    double lets_through(const Geometry& geometry, Shadows shadows) const {
+        const double o = geometry.opacity;
+        return geometry.solid || shadows == Shadows::physical ? 1 - o : 1 - o * o * o;
+    }
+    double transmittance(const Ray& ray, Shadows shadows, std::vector<Hit>& hits) const {
+        hits.clear();
+        LayerQuery query;
+        query.hits = &hits;
         RTCRay r;
         RayPacket planes;
         enter(ray, r, planes);
         bool open = false;
         PatchRays to_patches;
         if (patches) {
-            to_patches.rays = &planes, to_patches.undecided = &open, to_patches.transmittance = &query.transmittance;
+            to_patches.rays = &planes, to_patches.undecided = &open, to_patches.layers = &hits;
             query.patches = &to_patches;
         }
         occluded_1(scene, query, &r);
+        rethrow(query);
         note(&open, 1);
-        return r.tfar < 0 ? 0 : query.transmittance;
+        if (r.tfar < 0) return 0;
+        tidy(hits);
+        double light = 1;
+        for (const Hit& h : hits) light *= lets_through(geometries[h.geometry], shadows);
+        return light;
     }
 };
 
@@ -387,9 +195,7 @@ std::uint32_t EmbreeScene::add_patch(const ExactPatch& patch, std::uint32_t grou
     Geometry& data = s.geometries.emplace_back(Geometry{0, group, static_cast<float>(opacity), false, &patch, &s.centre, &s.radius});
     rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(patch.leaves()));
     rtcSetGeometryUserData(g, &data);
-    rtcSetGeometryBoundsFunction(g, bounds_of_leaf, nullptr);
-    rtcSetGeometryIntersectFunction(g, intersect_leaf);
-    rtcSetGeometryOccludedFunction(g, shadow_of_leaf);
+    set_patch_callbacks(g);
     rtcCommitGeometry(g);
     data.id = rtcAttachGeometry(s.scene, g);
     rtcReleaseGeometry(g);
@@ -463,6 +269,7 @@ void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
         const FlushSubnormals flush;
         intersect_16(valid, s.scene, query, &r);
     }
+    rethrow(query);
     s.note(open, static_cast<std::uint64_t>(n));
     for (int i = 0; i < n; ++i) {
         const std::uint32_t geometry = r.hit.geomID[i];
@@ -504,6 +311,7 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
         const FlushSubnormals flush;
         intersect_1(s.scene, query, &r);
     }
+    rethrow(query);
     s.note(&open, 1);
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID && s.geometries[r.hit.geomID].patch) {
         std::erase_if(hits, [&](const Hit& h) { return h.distance > nearest.distance; });
@@ -519,16 +327,7 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
         h.normal = {r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z};
         hits.push_back(h);
     }
-    std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
-        return std::tie(a.distance, a.geometry, a.primitive) < std::tie(b.distance, b.geometry, b.primitive);
-    });
-    hits.erase(std::unique(hits.begin(), hits.end(), [&](const Hit& a, const Hit& b) { return s.same_place(a, b); }),
-               hits.end());
-    for (std::size_t i = 0; i < hits.size(); ++i)
-        if (s.geometries[hits[i].geometry].solid)
-            hits.erase(std::remove_if(hits.begin() + i + 1, hits.end(),
-                                      [&](const Hit& h) { return h.geometry == hits[i].geometry; }),
-                       hits.end());
+    s.tidy(hits);
     for (Hit& h : hits) h.distance += start;
 }
 
@@ -538,8 +337,9 @@ void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, do
     if (active == 0) return;
     const FlushSubnormals flush;
     if (s.translucent) {
+        std::vector<Hit> hits;
         for (int i = 0; i < n; ++i)
-            if (active >> i & 1) result[i] = s.transmittance(rays[i], shadows);
+            if (active >> i & 1) result[i] = s.transmittance(rays[i], shadows, hits);
         return;
     }
     alignas(64) RTCRay16 r;
@@ -553,6 +353,7 @@ void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, do
     PatchRays to_patches{&planes, nullptr, open};
     if (s.patches) query.patches = &to_patches;
     occluded_16(valid, s.scene, query, &r);
+    rethrow(query);
     s.note(open, static_cast<std::uint64_t>(std::popcount(active)));
     for (int i = 0; i < n; ++i)
         if (valid[i] && r.tfar[i] < 0) result[i] = 0;

@@ -1,4 +1,4 @@
-// embree_scene.h -- what rays meet. embree_scene.cpp is the only file that includes Embree.
+// embree_scene.h -- what rays meet. Embree itself is known to embree_scene.cpp and embree_patches.cpp only.
 //
 // Embree computes in float32: everything is stored relative to `centre`, and rays begin where they enter the scene.
 // Immutable after commit(), and then safe to query from every thread; queries set the processor to flush subnormal

@@ -23,19 +23,27 @@ public:
         Point direction;
         double density = 0;  // over solid angle; 0: the image is black
     };
-    /// In proportion to the mean radiance in each pixel's part of the sphere, and evenly over that part.
+    /// In proportion to what is interpolated between pixels: a little of them to their radiance, most to what of it is above the mean of all (Karlik et al.,
+    /// MIS compensation, SIGGRAPH Asia 2019), as the even rest of a sky is found by the directions that surfaces choose anyway.
     Sample sample(const Vec2& s) const;
     /// That of sample(), exactly.
     double density(const Point& direction) const;
 
 private:
-    double row_top(int row) const;  // the cosine of its upper rim
-    double part(int x, int y) const;
+    // Cells lie between the middles of pixels, and those of the first and last row and the poles.
+    double row_top(int row) const;  // the cosine of a cell's upper rim
+    double grey(int x, int y) const;
+    double weight(int x, int y) const;
+    struct Cell {
+        double w00, w10, w01, w11;  // weights of its corners; the second digit is down
+    };
+    Cell cell(int x, int row) const;
     Vec2 place(const Point& direction) const;
     int width_, height_;
-    double brightest_sky_ = 0;
+    double brightest_sky_ = 0, mean_ = 0, even_ = 1, bright_ = 0;  // weight = even_ radiance + bright_ max(0, radiance - mean_)
+    double total_ = 0;                                            // of weights, over cosines and columns
     std::vector<float> rgb_;
-    std::vector<double> row_, in_row_;  // cumulative: rows, and pixels within each row, from 0 to 1
+    std::vector<double> row_, in_row_;  // cumulative: rows of cells, and cells within each row, from 0 to 1
 };
 
 /// An image file that somebody else may have made, decoded in a process of its own with its limits (image_decoder.h). Throws Error(io); Error(input) when it is

@@ -33,6 +33,8 @@ struct LeafMap {
     double bend = 0;                            // infinite where derivatives have no bound
     double turn_u = 0, turn_v = 0;              // at least |S_u hu - a|, |S_v hv - b| anywhere, infinite likewise
     bool slanted = false;                       // u + v = 1 runs through it
+    double uu = 0, uv = 0, vv = 0;              // at least |S_uu| hu^2, |S_uv| hu hv, |S_vv| hv^2 anywhere, infinite likewise
+    Point second[3];                            // those three, about, in the middle: where Newton's method begins
 };
 
 /// Rays against the linear map of a leaf.
@@ -57,7 +59,8 @@ struct NewtonPacket {
     double u[RayPacket::lanes], v[RayPacket::lanes];    // which is S(u,v)
     double before[RayPacket::lanes];                    // the last step
     double distance[RayPacket::lanes];                  // of the point that belongs to (x,y), along the ray
-    double step_x[RayPacket::lanes], step_y[RayPacket::lanes];  // Y f there
+    double step_x[RayPacket::lanes], step_y[RayPacket::lanes];  // Y f there,
+    double beyond[RayPacket::lanes];                            // but for an f of at most so much
     double frame[9][RayPacket::lanes];                  // S, S_u, S_v at (u,v)
 };
 
@@ -65,6 +68,9 @@ struct NewtonPacket {
 struct FloatRays {
     float *org_x, *org_y, *org_z, *dir_x, *dir_y, *dir_z, *tfar;
 };
+
+/// The longest step, in half leaves, that may be taken as the last without another look at S.
+constexpr double kLastStep = 1e-3;
 
 struct ExactKernel {
     /// Rays as Embree takes them: relative to `centre`, and from where they enter the ball around the scene, at start[i], as far eyes must not
@@ -75,9 +81,9 @@ struct ExactKernel {
     void (*planes)(int n, RayPacket& rays);
     /// `border`: rays that pass the border of the leaf within it are not missed.
     void (*aim)(const LeafMap& leaf, const RayPacket& rays, double border, const double* farthest, int n, AimPacket& out);
-    /// Begins where the linear map meets the rays; lanes that are not met once are `gone`.
-    void (*begin)(const LeafMap& leaf, const AimPacket& aim, int n, NewtonPacket& out);
-    /// One step with the frames; `newton` or the map that is proved to contract. Is any lane still active?
+    /// Begins where the linear map meets the rays, bent as the leaf is in its middle; lanes that are not met once are `gone`.
+    void (*begin)(const LeafMap& leaf, const RayPacket& rays, const AimPacket& aim, int n, NewtonPacket& out);
+    /// One step with the frames, and where what is left after it is proved to be nothing, with S of where it leads; `newton` or the map that is proved to contract. Is any lane still active?
     bool (*step)(const LeafMap& leaf, const RayPacket& rays, const AimPacket& aim, bool newton, int n, NewtonPacket& p);
 };
 const ExactKernel& exact_kernel(Isa isa);

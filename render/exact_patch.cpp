@@ -74,7 +74,10 @@ void ExactPatch::set(Leaf& leaf, const Box& given, std::uint32_t cell) const {
         const double second = 0.5 * uu + uv + 0.5 * vv;
         const double known = radius(s) + leaf.hu * radius(su) + leaf.hv * radius(sv);
         leaf.bend = (std::min(second, turn_u + turn_v) + known) * (1 + kRounding) + kRounding * (leaf.size_s + leaf.size_a + leaf.size_b);
-        if (std::isfinite(second)) leaf.uu = uu, leaf.uv = uv, leaf.vv = vv;
+        if (std::isfinite(second)) leaf.uu = uu * (1 + kRounding), leaf.uv = uv * (1 + kRounding), leaf.vv = vv * (1 + kRounding);
+        const auto suu = coefficient(e.centre, 3), suv = coefficient(e.centre, 4), svv = coefficient(e.centre, 5);
+        if (std::isfinite(second) && bounded(suu) && bounded(suv) && bounded(svv))
+            leaf.second[0] = (2 * leaf.hu * leaf.hu) * middle(suu), leaf.second[1] = (leaf.hu * leaf.hv) * middle(suv), leaf.second[2] = (2 * leaf.hv * leaf.hv) * middle(svv);
         if (!std::isfinite(leaf.bend)) leaf.bend = leaf.turn_u = leaf.turn_v = kInfinity;
         for (int k = 0; k < 3 && std::isfinite(leaf.bend); ++k) {
             const double reach = (std::fabs(leaf.a[k]) + std::fabs(leaf.b[k]) + leaf.bend) * (1 + kRounding);
@@ -162,7 +165,7 @@ void ExactPatch::frames(const Leaf& leaf, int n, NewtonPacket& p) const {
 /// Newton's method for rays that have one root at most in the leaf, all of them at once.
 void ExactPatch::solve(const Leaf& leaf, const RayPacket& rays, const double* farthest, const AimPacket& aim, int n, Roots* found) const {
     NewtonPacket p;
-    kernel_.begin(leaf, aim, n, p);
+    kernel_.begin(leaf, rays, aim, n, p);
     bool going = true;
     for (int step = 0; step < kSteps && going; ++step) {
         frames(leaf, n, p);
@@ -189,8 +192,14 @@ double ExactPatch::proved_error(const Leaf& leaf, const RayPacket& rays, const A
     };
     const RayPlanes ray = rays.at(lane);
     const double rounding = 1e-15 * (std::fabs(p.distance[lane]) + leaf.size_s + leaf.size_a + leaf.size_b + leaf.bend + length(ray.origin));
+    double beyond = p.beyond[lane];
+    if (beyond > 0 && cells_) {  // the last step was by derivatives that are known to an error, and parameters are rounded
+        const FrameError& of = cells_->error();
+        beyond += 1.7320509 * kLastStep * (leaf.hu * of.du + leaf.hv * of.dv);
+        beyond += 2.3e-16 * (std::fabs(p.u[lane]) / leaf.hu * (leaf.size_a + leaf.turn_u) + std::fabs(p.v[lane]) / leaf.hv * (leaf.size_b + leaf.turn_v));
+    }
     if (cells_) {
-        const double error = distance_to_root(p.step_x[lane], p.step_y[lane], 1.7320509 * cells_->error().position + rounding);
+        const double error = distance_to_root(p.step_x[lane], p.step_y[lane], 1.7320509 * cells_->error().position + beyond + rounding);
         if (error < kSharp * size_) return error;
     }
     const Vec3<Interval> s = patch_.enclose_point(p.u[lane], p.v[lane]);

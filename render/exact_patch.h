@@ -55,7 +55,6 @@ public:
 
 private:
     struct Leaf : LeafMap {
-        double uu = 0, uv = 0, vv = 0;  // at least |S_uu| hu^2, |S_uv| hu hv, |S_vv| hv^2, infinite likewise
         Bounds values;
         std::uint32_t cell = 0;  // of the patch
         int depth = 0;           // bisections below a leaf

@@ -11,6 +11,7 @@
 #include "image_loader.h"
 #include "io/atomic_file.h"
 #include "palette.h"
+#include "png_file.h"
 
 namespace isoparm {
 namespace {
@@ -112,6 +113,12 @@ void write_file(const std::string& path, const std::string& file, const Format& 
     }
 }
 
+void write_png(const std::string& path, const Image& image, const Metadata& metadata) {
+    const bool with_alpha = !opaque(image);
+    const std::string file = png_file(image.width, image.height, with_alpha ? 4 : 3, bytes_of(image, with_alpha), metadata);
+    write_atomically(path, [&](std::ostream& out) { out.write(file.data(), static_cast<std::streamsize>(file.size())); });
+}
+
 void take_pixels(void* user, int width, int height, int channels, int integers, const float* data) {
     Image& image = *static_cast<Image*>(user);
     image.width = width;
@@ -145,6 +152,7 @@ bool holds_layers(const std::string& path) { return format_of(path).linear; }
 void write_image(const std::string& path, const Image& image, const Layers& layers, const Metadata& metadata) {
     const Format& format = format_of(path);
     if (!layers.channels.empty() && !format.linear) throw Error(ErrorKind::usage, path + ": only .exr holds further channels");
+    if (format.extension == std::string("png")) return write_png(path, image, metadata);
     image_module();  // loaded before there is a file to lose
     write_atomically_by_name(path, [&](const std::string& file) { write_file(path, file, format, image, layers, metadata); });
 }

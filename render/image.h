@@ -1,5 +1,5 @@
 // image.h -- pixels and files. image_oiio.cpp, the only file that includes OpenImageIO, is a module loaded when an
-// image is first written: linking OpenImageIO would cost every start of the program half a second.
+// image other than a PNG is first written, or any is read: linking OpenImageIO would cost every start of the program half a second.
 #pragma once
 #include <string>
 #include <utility>
@@ -18,7 +18,7 @@ struct Image {
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
 /// EXR: linear half floats, premultiplied. PNG and other 8-bit formats: sRGB transfer, unpremultiplied, rounded; opaque
-/// pictures are written without alpha. Written to a temporary name, read back, synced, renamed. No dates, no command
+/// pictures are written without alpha. Written to a temporary name, read back (but for PNG, where every error of writing is told), synced, renamed. No dates, no command
 /// lines: the same picture gives the same bytes. Throws Error(io), or Error(usage) for an unknown extension.
 void write_image(const std::string& path, const Image& image, const Metadata& metadata);
 

@@ -11,6 +11,7 @@
 #include "drawn.h"
 #include "flat_lines.h"
 #include "jump_heat.h"
+#include "label_places.h"
 #include "labels.h"
 #include "legend.h"
 #include "outlines.h"
@@ -236,18 +237,31 @@ private:
     std::vector<Anchor> surface_anchors(const SceneObject& o) const {
         const Surface& s = surface_of(scene_, o);
         const Patch& patch = s.patches[s.patches.size() / 2].patch;
-        const Rect r = patch.rect();
-        std::vector<Vec2> at;
-        if (o.label.at_uv)
-            at = {*o.label.at_uv};
-        else if (patch.domain() == Domain::triangle)
-            at = {{1.0 / 3, 1.0 / 3}, {0.5, 0.25}, {0.25, 0.5}, {0.25, 0.25}};
-        else
-            for (const auto& [x, y] : {std::array{0.5, 0.5}, {0.3, 0.5}, {0.7, 0.5}, {0.5, 0.3}, {0.5, 0.7}})
-                at.push_back({r.u0 + x * (r.u1 - r.u0), r.v0 + y * (r.v1 - r.v0)});
         std::vector<Anchor> anchors;
-        for (const Vec2& uv : at) anchors.push_back(anchor(patch.point(uv.x, uv.y), 0));
-        return anchors;
+        for (const Vec2& uv : o.label.at_uv ? std::vector<Vec2>{*o.label.at_uv} : middle_places(patch)) anchors.push_back(anchor(patch.point(uv.x, uv.y), 0));
+        if (o.label.at_uv || std::any_of(anchors.begin(), anchors.end(), in_sight)) return anchors;
+        const std::vector<Anchor> others = anchors_in_sight(s.patches);
+        return others.empty() ? anchors : others;
+    }
+    static bool in_sight(const Anchor& a) { return a.seen >= 0.5 && std::isfinite(a.at.x + a.at.y); }
+    /// What is seen of a surface whose middle is hidden: places with as much of it around them as there is.
+    std::vector<Anchor> anchors_in_sight(const Composite& patches) const {
+        constexpr std::size_t kLookedAt = 600, kKept = 5;
+        constexpr double kAround = 2.5;  // letters
+        std::vector<Anchor> all;
+        for (const Point& p : places_all_over(patches, kLookedAt))
+            if (const Anchor a = anchor(p, 0); std::isfinite(a.at.x + a.at.y) && inside(a.at)) all.push_back(a);
+        std::vector<std::pair<double, Anchor>> seen;  // the lower, the better
+        for (const Anchor& a : all) {
+            if (!in_sight(a)) continue;
+            double cost = 0;
+            for (const Anchor& b : all) cost -= std::max(0.0, 1 - std::hypot(a.at.x - b.at.x, a.at.y - b.at.y) / (kAround * letter_)) * (in_sight(b) ? 1 : -2);
+            seen.push_back({cost, a});
+        }
+        std::stable_sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        std::vector<Anchor> best;
+        for (std::size_t k = 0; k < std::min(kKept, seen.size()); ++k) best.push_back(seen[k].second);
+        return best;
     }
     std::vector<Anchor> curve_anchors(const SceneObject& o) const {
         const Curve& c = curve_of(scene_, o);

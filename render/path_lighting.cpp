@@ -33,7 +33,6 @@ struct PathLighting::Path {
 /// The paths of one call that go on.
 struct PathLighting::Batch {
     const TracedScene& scene;
-    const PixelSampler& sampler;
     int bounce = 0, n = 0;
     Path paths[EmbreeScene::packet];
     int number[EmbreeScene::packet];  // of the surfel
@@ -41,7 +40,7 @@ struct PathLighting::Batch {
     /// `sheet`: of those that a ray passes.
     Vec2 random(const Path& p, Dimension d, int sheet = 0) const {
         constexpr int apart = 1 << 16;  // dimensions: more than all layers and bounces of a pixel use
-        return sampler(p.at.sample, p.at.dimension + kDimensions * bounce + d + apart * sheet);
+        return (*p.at.sample.sampler)(p.at.sample.number, p.at.dimension + kDimensions * bounce + d + apart * sheet);
     }
     void drop_ended(Color* out) {
         int kept = 0;
@@ -62,8 +61,8 @@ PathLighting::PathLighting(const LightingSettings& settings, const Camera& camer
     if (ground) sky_on_ground_ = lights_.sky_irradiance(ground->up);
 }
 
-void PathLighting::shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const {
-    Batch batch{scene, sampler, 0, n, {}, {}};
+void PathLighting::shade(const TracedScene& scene, const Surfel* surfels, int n, Color* out) const {
+    Batch batch{scene, 0, n, {}, {}};
     for (int i = 0; i < n; ++i) batch.paths[i].at = surfels[i], batch.number[i] = i;
     for (; batch.n > 0; ++batch.bounce) {
         ask_lights(batch);

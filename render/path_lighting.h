@@ -13,7 +13,7 @@ public:
     /// `ground`, if there is one: with its height; its `up` is the normal of surfels that are of it.
     PathLighting(const LightingSettings& settings, const Camera& camera, const EnvironmentImages& images, const std::optional<Ground>& ground);
     int dimensions() const override { return kDimensions * (settings_.bounces + 1); }
-    void shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const override;
+    void shade(const TracedScene& scene, const Surfel* surfels, int n, Color* out) const override;
     std::optional<Color> backdrop(const Point& direction) const override { return lights_.backdrop(direction); }
 
 private:

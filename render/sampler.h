@@ -49,7 +49,7 @@ public:
     /// A point of [0,1)^2; over all samples those of one dimension fill the square evenly.
     Vec2 operator()(int sample, int dimension) const {
         using namespace sampling;
-        const std::uint32_t seed = mixed(seed_ + 0x85ebca6bu * static_cast<std::uint32_t>(dimension));
+        const std::uint32_t seed = seed_of(dimension);
         const std::uint32_t i =
             owen_scrambled(static_cast<std::uint32_t>(sample) << (32 - bits_), seed) >> (32 - bits_);
         std::uint32_t y = 0;
@@ -58,6 +58,10 @@ public:
         return {unit(owen_scrambled(reversed_bits(i), mixed(seed ^ 0x68bc21ebu))),
                 unit(owen_scrambled(y, mixed(seed ^ 0x02e5be93u)))};
     }
+
+    // For sample_points(), which does the same in vectors.
+    std::uint32_t seed_of(int dimension) const { return sampling::mixed(seed_ + 0x85ebca6bu * static_cast<std::uint32_t>(dimension)); }
+    int bits() const { return bits_; }
 
 private:
     std::uint32_t seed_;

@@ -4,7 +4,7 @@
 #include "embree_scene.h"
 #include "local_frame.h"
 #include "light.h"
-#include "sampler.h"
+#include "sample_points.h"
 #include "studio.h"
 
 namespace isoparm {
@@ -24,7 +24,8 @@ struct Surfel {
     const Material* material = nullptr;
     Color ink;  // of the lines drawn on it, unlit
     double ink_cover = 0;
-    int sample = 0, dimension = 0;  // of the sampler: the first that is its own
+    SampleOf sample;    // that it is lit for
+    int dimension = 0;  // of its sampler: the first that is its own
 };
 
 struct TracedScene;
@@ -34,9 +35,9 @@ public:
     virtual ~Lighting() = default;
     /// How many dimensions of the sampler a surfel uses.
     virtual int dimensions() const = 0;
-    /// Light leaving n <= EmbreeScene::packet surfels of one pixel toward the viewer, linear, without the ink. Of the ground: the part of its light by
+    /// Light leaving n <= EmbreeScene::packet surfels toward the viewer, linear, without the ink. Of the ground: the part of its light by
     /// which it differs from a white one with nothing on it: -1 in full shadow, 0 where nothing changes it.
-    virtual void shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const = 0;
+    virtual void shade(const TracedScene& scene, const Surfel* surfels, int n, Color* out) const = 0;
     /// What the camera sees where nothing is, instead of the background.
     virtual std::optional<Color> backdrop(const Point&) const { return {}; }
 };
@@ -46,7 +47,7 @@ public:
     /// `ground`: as of PathLighting.
     explicit FigureLighting(const Camera& camera, const std::optional<Ground>& ground = {});
     int dimensions() const override { return 2; }
-    void shade(const TracedScene& scene, const PixelSampler& sampler, const Surfel* surfels, int n, Color* out) const override;
+    void shade(const TracedScene& scene, const Surfel* surfels, int n, Color* out) const override;
 
 private:
     Studio studio_;

@@ -93,10 +93,10 @@ void color_by_curvature(const Thing& thing, Surfel& s) {
     s.opacity = 0;
 }
 
-Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, const Hit& hit, const Vec2& at, const PointFrame& frame) {
+/// Into what was just constructed: copies take longer than all the rest.
+void make_surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, const Hit& hit, const Vec2& at, const PointFrame& frame, Surfel& s) {
     const Thing& thing = scene.things[hit.geometry];
     const double clear = 4e-6 * scene.embree->radius() + thing.error;
-    Surfel s;
     s.view = -ray.direction;
     s.opacity = thing.opacity;
     s.material = &thing.material;
@@ -109,7 +109,7 @@ Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, co
         s.origin = s.position + clear * s.normal;
         s.beneath = s.position - clear * s.normal;
         s.color = thing.front;
-        return s;
+        return;
     }
     const Point du = coefficient(frame, 1, 0), dv = coefficient(frame, 0, 1);
     const auto [on_mesh, outward] = thing.mesh ? on_triangle(thing, hit) : on_patch(thing, ray, hit, at, du, dv);
@@ -136,7 +136,6 @@ Surfel surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, co
     }
     if (thing.scale.by.curvature()) color_by_curvature(thing, s);
     else if (thing.scale.by.striped() && in_dark_stripe(thing.scale.by, s.normal, ray.direction, camera)) s.color = 0.06 * s.color;
-    return s;
 }
 
 }  // namespace
@@ -145,7 +144,7 @@ void surfels_at(const TracedScene& scene, const Camera& camera, const Ray* rays,
     Vec2 at[EmbreeScene::packet];
     PointFrame frames[EmbreeScene::packet];
     frames_of(scene, hits, n, at, frames);
-    for (int i = 0; i < n; ++i) out[i] = surfel(scene, camera, rays[i], hits[i], at[i], frames[i]);
+    for (int i = 0; i < n; ++i) make_surfel(scene, camera, rays[i], hits[i], at[i], frames[i], out[i]);
 }
 
 }  // namespace isoparm

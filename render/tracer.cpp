@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
 #include <thread>
@@ -14,21 +15,57 @@ void Tracer::sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* sp
     while (sum.seen < to && !(stop && stop())) {
         const int first = sum.seen, n = std::min(EmbreeScene::packet, to - first);
         Ray rays[EmbreeScene::packet];
+        SampleOf of[EmbreeScene::packet];
+        Vec2 pixel[EmbreeScene::packet];
         Rgba seen[EmbreeScene::packet];
-        for (int i = 0; i < n; ++i) {
-            const Vec2 at = filter_(sampler(first + i, 0));
-            rays[i] = camera_.ray(x + 0.5 + at.x, y + 0.5 + at.y);
-        }
-        trace(sampler, rays, first, n, seen);
-        for (int i = 0; i < n; ++i) {
-            if (counts) sum.color += seen[i].color, sum.alpha += seen[i].alpha;
-            if (!spread) continue;
-            seen[i].add_behind(background_.value_or(Color{1, 1, 1}), 1);
-            spread->add(seen[i].color);
-        }
-        sum.seen += n;
-        if (counts) sum.used += n;
+        for (int i = 0; i < n; ++i) of[i] = {&sampler, first + i}, pixel[i] = {double(x), double(y)};
+        this->rays(pixel, of, n, rays);
+        trace(rays, of, n, seen);
+        add(seen, n, counts, sum, spread);
     }
+}
+
+void Tracer::rays(const Vec2* pixel, const SampleOf* of, int n, Ray* out) const {
+    constexpr int kFirst[EmbreeScene::packet] = {};
+    Vec2 at[EmbreeScene::packet];
+    sample_points(of, kFirst, n, at);
+    for (int i = 0; i < n; ++i) {
+        const Vec2 aside = filter_(at[i]);
+        at[i] = {pixel[i].x + 0.5 + aside.x, pixel[i].y + 0.5 + aside.y};
+    }
+    camera_rays(camera_, at, n, out);
+}
+
+Tracer::Block Tracer::block() const {
+    const int pixels = EmbreeScene::packet / samples_;
+    return pixels >= 16 ? Block{4, 4} : pixels >= 8 ? Block{4, 2} : pixels >= 4 ? Block{2, 2} : pixels >= 2 ? Block{2, 1} : Block{1, 1};
+}
+
+void Tracer::sample_block(int x, int y, Rgba* seen) const {
+    std::array<std::optional<PixelSampler>, EmbreeScene::packet> samplers;
+    Ray rays[EmbreeScene::packet];
+    SampleOf of[EmbreeScene::packet];
+    Vec2 pixel[EmbreeScene::packet];
+    const Block size = block();
+    int n = 0;
+    for (int k = 0; k < size.width * size.height; ++k) {
+        const int px = x + k % size.width, py = y + k / size.width;
+        samplers[static_cast<std::size_t>(k)].emplace(px, py, samples_);
+        for (int i = 0; i < samples_; ++i, ++n) of[n] = {&*samplers[static_cast<std::size_t>(k)], i}, pixel[n] = {double(px), double(py)};
+    }
+    this->rays(pixel, of, n, rays);
+    trace(rays, of, n, seen);
+}
+
+void Tracer::add(Rgba* seen, int n, bool counts, PixelSum& sum, Spread* spread) const {
+    for (int i = 0; i < n; ++i) {
+        if (counts) sum.color += seen[i].color, sum.alpha += seen[i].alpha;
+        if (!spread) continue;
+        seen[i].add_behind(background_.value_or(Color{1, 1, 1}), 1);
+        spread->add(seen[i].color);
+    }
+    sum.seen += n;
+    if (counts) sum.used += n;
 }
 
 Rgba Tracer::resolved(const PixelSum& sum) const {
@@ -49,12 +86,13 @@ Rgba Tracer::finished(Rgba pixel) const {
 Rgba Tracer::glance(double x, double y) const {
     const PixelSampler sampler(static_cast<int>(x), static_cast<int>(y), samples_);
     const Ray ray = camera_.ray(x, y);
+    const SampleOf of{&sampler, 0};
     Rgba seen;
-    trace(sampler, &ray, 0, 1, &seen);
+    trace(&ray, &of, 1, &seen);
     return finished(seen);
 }
 
-void Tracer::trace(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba* seen) const {
+void Tracer::trace(const Ray* rays, const SampleOf* of, int n, Rgba* seen) const {
     std::vector<Met> met;
     if (scene_.embree->translucent()) {
         std::vector<Hit> hits;
@@ -75,7 +113,7 @@ void Tracer::trace(const PixelSampler& sampler, const Ray* rays, int first, int 
             else if (hits[i].found()) met.push_back({hits[i], i, 0});
         }
     }
-    add_light(sampler, rays, first, met, seen);
+    add_light(rays, of, met, seen);
     for (int i = 0; i < n; ++i)
         if (const auto behind = lighting_.backdrop(rays[i].direction)) seen[i].add_behind(*behind, 1);
 }
@@ -115,7 +153,7 @@ void Tracer::surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const
 }
 
 /// Layers of a ray come from front to back.
-void Tracer::add_light(const PixelSampler& sampler, const Ray* rays, int first, const std::vector<Met>& met, Rgba* seen) const {
+void Tracer::add_light(const Ray* rays, const SampleOf* of, const std::vector<Met>& met, Rgba* seen) const {
     for (std::size_t begin = 0; begin < met.size(); begin += EmbreeScene::packet) {
         const int count = static_cast<int>(std::min<std::size_t>(EmbreeScene::packet, met.size() - begin));
         Ray by[EmbreeScene::packet];
@@ -125,11 +163,11 @@ void Tracer::add_light(const PixelSampler& sampler, const Ray* rays, int first, 
         if (ground_) this->surfels(by, hits, count, surfels);
         else surfels_at(scene_, camera_, by, hits, count, surfels);
         for (int k = 0; k < count; ++k) {
-            surfels[k].sample = first + met[begin + k].ray;
+            surfels[k].sample = of[met[begin + k].ray];
             surfels[k].dimension = 1 + lighting_.dimensions() * met[begin + k].layer;
         }
         Color light[EmbreeScene::packet];
-        lighting_.shade(scene_, sampler, surfels, count, light);
+        lighting_.shade(scene_, surfels, count, light);
         for (int k = 0; k < count; ++k) {
             Rgba& pixel = seen[met[begin + k].ray];
             if (surfels[k].ground) {  // the background, or white, times 1 + light: what is lacking hides, what has a colour is added
@@ -145,6 +183,66 @@ void Tracer::add_light(const PixelSampler& sampler, const Ray* rays, int first, 
     }
 }
 
+namespace {
+
+/// The round, in one tile; tells how many samples it traced. `stopped` is set where it is not whole.
+class Tile {
+public:
+    Tile(const Tracer& tracer, Film& film, const Area& area, const std::function<bool()>& stop, std::atomic<bool>& stopped)
+        : tracer_(tracer), film_(film), area_(area), stop_(stop), stopped_(stopped) {}
+    std::int64_t trace() {
+        if (film_.samples() > EmbreeScene::packet / 2) pixels();
+        else blocks(tracer_.block());
+        return traced_;
+    }
+
+private:
+    bool open(int x, int y) const { return film_.goes_on(x, y) && film_.at(x, y).seen < film_.round(); }
+    void pixels() {
+        for (int y = area_.y0; y < area_.y1; ++y)
+            for (int x = area_.x0; x < area_.x1; ++x) {
+                if (!open(x, y)) continue;
+                if (stopped_.load(std::memory_order_relaxed)) return;
+                PixelSum& pixel = film_.at(x, y);
+                const int before = pixel.seen;
+                tracer_.sample(x, y, film_.round(), film_.counts(x, y), pixel, film_.spread(x, y), stop_);
+                traced_ += pixel.seen - before;
+                if (pixel.seen < film_.round()) stopped_ = true;
+            }
+    }
+    /// All samples of a pixel are in one round.
+    void blocks(const Tracer::Block& b) {
+        const int n = film_.samples();
+        for (int y = area_.y0 - area_.y0 % b.height; y < area_.y1; y += b.height)
+            for (int x = area_.x0 - area_.x0 % b.width; x < area_.x1; x += b.width) {
+                if (stopped_.load(std::memory_order_relaxed)) return;
+                const auto each = [&](auto use) {
+                    for (int k = 0; k < b.width * b.height; ++k)
+                        if (const int px = x + k % b.width, py = y + k / b.width; px >= area_.x0 && px < area_.x1 && py >= area_.y0 && py < area_.y1 && open(px, py)) use(k, px, py);
+                };
+                bool any = false;
+                each([&](int, int, int) { any = true; });
+                if (!any) continue;
+                if (stop_ && stop_()) {
+                    stopped_ = true;
+                    return;
+                }
+                Rgba seen[EmbreeScene::packet];
+                tracer_.sample_block(x, y, seen);
+                each([&](int k, int px, int py) { tracer_.add(seen + k * n, n, film_.counts(px, py), film_.at(px, py), film_.spread(px, py)), traced_ += n; });
+            }
+    }
+
+    const Tracer& tracer_;
+    Film& film_;
+    Area area_;
+    const std::function<bool()>& stop_;
+    std::atomic<bool>& stopped_;
+    std::int64_t traced_ = 0;
+};
+
+}  // namespace
+
 bool trace_round(const Tracer& tracer, Film& film, int side, const std::function<bool()>& stop, const std::function<void(double)>& progress) {
     const Area& area = film.area();
     const int across = (area.width() + side - 1) / side, tiles = across * ((area.height() + side - 1) / side);
@@ -152,19 +250,8 @@ bool trace_round(const Tracer& tracer, Film& film, int side, const std::function
     std::atomic<bool> stopped{false};
     std::atomic<std::int64_t> traced{0};
     tbb::parallel_for(0, tiles, [&](int tile) {
-        std::int64_t here = 0;
         const int x0 = area.x0 + side * (tile % across), y0 = area.y0 + side * (tile / across);
-        for (int y = y0; y < std::min(y0 + side, area.y1); ++y)
-            for (int x = x0; x < std::min(x0 + side, area.x1); ++x) {
-                PixelSum& pixel = film.at(x, y);
-                if (!film.goes_on(x, y) || pixel.seen >= film.round()) continue;
-                if (stopped.load(std::memory_order_relaxed)) return;
-                const int before = pixel.seen;
-                tracer.sample(x, y, film.round(), film.counts(x, y), pixel, film.spread(x, y), stop);
-                here += pixel.seen - before;
-                if (pixel.seen < film.round()) stopped = true;
-            }
-        const std::int64_t all = traced += here;
+        const std::int64_t all = traced += Tile(tracer, film, {x0, y0, std::min(x0 + side, area.x1), std::min(y0 + side, area.y1)}, stop, stopped).trace();
         if (progress && std::this_thread::get_id() == caller) progress(static_cast<double>(all));
     });
     return !stopped;

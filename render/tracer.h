@@ -29,6 +29,15 @@ public:
     /// Traces samples of the pixel up to number `to`, in packets that begin at multiples of EmbreeScene::packet; between them it may end early when
     /// `stop` says so. `counts`: they are added to the sums. `spread` may be nullptr.
     void sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* spread, const std::function<bool()>& stop) const;
+    /// Pixels of pictures of few samples share packets: blocks so wide and high, which begin at multiples of that, whatever part of the picture is rendered.
+    struct Block {
+        int width, height;
+    };
+    Block block() const;
+    /// Traces all samples of the block at (x,y): those of its pixels, row by row.
+    void sample_block(int x, int y, Rgba* seen) const;
+    /// Adds traced samples to a pixel's sums; `spread` may be nullptr.
+    void add(Rgba* seen, int n, bool counts, PixelSum& sum, Spread* spread) const;
     /// Background and all, premultiplied; of a pixel that has samples.
     Rgba resolved(const PixelSum& sum) const;
     /// A single sample through the middle of some pixels, for pictures that are not there yet.
@@ -40,13 +49,15 @@ private:
         Hit hit;
         int ray, layer;
     };
+    /// Through the samples' places in the pixels whose corners are given.
+    void rays(const Vec2* pixel, const SampleOf* of, int n, Ray* out) const;
     Rgba finished(Rgba pixel) const;
     /// What a ray meets of the ground before `end`.
     std::optional<Hit> ground_hit(const Ray& ray, double end) const;
     Surfel ground_surfel(const Ray& ray, double distance) const;
     void surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const;
-    void trace(const PixelSampler& sampler, const Ray* rays, int first, int n, Rgba* seen) const;
-    void add_light(const PixelSampler& sampler, const Ray* rays, int first, const std::vector<Met>& met, Rgba* seen) const;
+    void trace(const Ray* rays, const SampleOf* of, int n, Rgba* seen) const;
+    void add_light(const Ray* rays, const SampleOf* of, const std::vector<Met>& met, Rgba* seen) const;
 
     const TracedScene& scene_;
     const Camera& camera_;

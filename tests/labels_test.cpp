@@ -198,6 +198,22 @@ TEST(Labels, BehindASurfaceAreFainterOrAbsent) {
     EXPECT_EQ(opacity[2], 0);
 }
 
+// A sheet, 4 wide, behind a board that is 2 wide and hides its middle.
+TEST(Labels, OfSurfacesStandWhereTheyAreSeen) {
+    const Scene scene = scene_from(R"({ "isoparm": 1, "surfaces": { "sheet": { "type": "bilinear", "points": [[-2,0,-1],[2,0,-1],[-2,0,1],[2,0,1]] },
+        "board": { "type": "bilinear", "points": [[-1,-1,-2],[1,-1,-2],[-1,-1,2],[1,-1,2]] } },
+        "objects": [ { "surface": "sheet", "label": "S" }, { "surface": "board" } ], "camera": { "eye": [0.5,-9,0.5], "target": [0,0,0], "fov": 40 } })");
+    const Camera camera = make_camera(scene.camera, {}, 480, 320);
+    const Drawing d = overlay(scene, scene.objects, build_traced_scene(scene, 1e-2, {}), camera, 1, 8);
+    ASSERT_EQ(d.size(), 1u);
+    EXPECT_EQ(d[0].opacity, 1);
+    const auto& text = std::get<Text>(d[0].shape);
+    ASSERT_TRUE(text.anchor);
+    const auto x_of = [&](double x, double y) { return camera.project({x, y, 0}).x; };
+    const bool left = text.anchor->x > x_of(-2, 0) && text.anchor->x < x_of(-1, -1), right = text.anchor->x < x_of(2, 0) && text.anchor->x > x_of(1, -1);
+    EXPECT_TRUE(left || right) << text.anchor->x;
+}
+
 TEST(Labels, ABallDoesNotHideItsOwnLabel) {
     Scene scene = from_above(4, 100, 100, 1);
     SceneObject& o = add(scene, Kind::point);
