@@ -178,7 +178,7 @@ private:
     const Patch& patch_;
     const Box cell_;
     const double bound_;
-    const ControlNet net_;
+    const CertifiedNet net_;
     std::array<Point, 3> points_;
 };
 

@@ -55,8 +55,8 @@ Box Cover::cell_of(const CertifiedTriangle& t) const {
     return {between(us_, std::min({a.x, b.x, c.x})), between(vs_, std::min({a.y, b.y, c.y}))};
 }
 
-ControlNet Cover::net_of(const CertifiedTriangle& t) const {
-    ControlNet n;
+CertifiedNet Cover::net_of(const CertifiedTriangle& t) const {
+    CertifiedNet n;
     for (int k = 0; k < 3; ++k) {
         const Vec2 &a = claim_.uv[t.corner[k]], &b = claim_.uv[t.corner[(k + 1) % 3]];
         const auto& [w, z] = t.slide[k];
@@ -83,7 +83,7 @@ std::string Cover::triangle_fault(const CertifiedTriangle& t) const {
         p[k] = &claim_.uv[t.corner[k]];
         if (!inside(p[k]->x, cell.u) || !inside(p[k]->y, cell.v) || (triangle && beyond_third(*p[k]) > 0)) return "leaves the domain, or crosses a break, at " + text_of(*p[k]);
     }
-    const ControlNet net = net_of(t);
+    const CertifiedNet net = net_of(t);
     for (int k = 0; k < 3; ++k)
         for (int half = 0; half < 2; ++half) {
             const Vec2& w = t.slide[k][half];

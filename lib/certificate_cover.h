@@ -10,7 +10,7 @@ namespace isoparm {
 
 /// Which point of the surface belongs to a point of a triangle: its parameters are cubic in the barycentric coordinates l of the point, with these
 /// Bernstein coefficients; that of l0^i l1^j l2^k stands at (3 - i)(4 - i) / 2 + k.
-struct ControlNet {
+struct CertifiedNet {
     std::array<Interval, 10> u, v;
 };
 
@@ -19,7 +19,7 @@ class Cover {
 public:
     Cover(const Patch& patch, const CertifiedPatch& claim);
 
-    ControlNet net_of(const CertifiedTriangle& t) const;
+    CertifiedNet net_of(const CertifiedTriangle& t) const;
 
     /// Why the triangles are no triangulation of the domain whose slides keep its border and its cells; empty when they are one.
     std::string fault() const;
