@@ -60,6 +60,13 @@ TEST(CageObj, NegativeIndicesCountBackFromTheLastVertexSoFar) {
     EXPECT_EQ(c.faces[1], (std::vector<int>{0, 2, 3}));
 }
 
+TEST(CageObj, ABackslashJoinsLinesButNotInComments) {
+    const Cage c = read_cage_obj("# c:\\\nv 0 0 0\nv 1 \\\r\n 0 0\nv 1 1 0\nf 1 \\\n2 \\  \n3\nv 0 1 0 \\", "c.obj");
+    EXPECT_EQ(c.positions.size(), 4u);
+    EXPECT_EQ(c.faces[0], (std::vector<int>{0, 1, 2}));
+    EXPECT_NE(refusal(square + "f 1 \\\n2 9").find("c.obj:7:3: found the vertex index 9"), std::string::npos) << refusal(square + "f 1 \\\n2 9");
+}
+
 TEST(CageObj, FacesMayComeBeforeTheirVertices) {
     EXPECT_EQ(read_cage_obj("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 1 1 0\n", "c.obj").faces[0], (std::vector<int>{0, 1, 2}));
 }
