@@ -79,22 +79,34 @@ struct SideVertex {
     }
     /// Over one denominator, which vanishes at the corners.
     std::vector<Polynomial> homogeneous(const Polynomial& u, const Polynomial& v, const Polynomial& w) const {
-        if (part != SideVertexPart::sum) return {};
-        const bool bulges = form == SideVertexForm::delta;
-        const auto bent = [&](int k, const Point& from, const Point& to, const Polynomial& a, const Polynomial& b) {
-            return bulges ? RationalCone(H, Bulge{E[k], from, to}, E[k], a, b) : RationalCone(H, E[k], E[k], a, b);
-        };
-        const RationalCone cones[3] = {bent(0, B, C, w, v), bent(1, C, A, u, w), bent(2, A, B, v, u)};
-        if (!cones[0].exists || !cones[1].exists || !cones[2].exists) return {};
-        const int orders = cones[0].order + cones[1].order + cones[2].order;
-        if (std::max({cones[0].degree - cones[0].order, cones[1].degree - cones[1].order, cones[2].degree - cones[2].order}) + orders > kMostDegree) return {};
-        const Polynomial powers[3] = {power(w + v, cones[0].order), power(u + w, cones[1].order), power(v + u, cones[2].order)};
-        const Vec3<Polynomial> flat = bulges ? Vec3<Polynomial>(u * A + v * B + w * C) : Vec3<Polynomial>(H(u) * A + H(v) * B + H(w) * C);
+        using Part = SideVertexPart;
+        if (part == Part::s4) return {};  // a polynomial, or nothing
+        const bool whole = part == Part::sum, bulges = form == SideVertexForm::delta;
+        const Polynomial* sides[3][2] = {{&w, &v}, {&u, &w}, {&v, &u}};  // a, b of the cones
+        const Point *from[3] = {&B, &C, &A}, *to[3] = {&C, &A, &B};
+        const Part alone[3] = {Part::s3, Part::s1, Part::s2};
+        Vec3<Polynomial> sum[3];
+        Polynomial powers[3] = {1, 1, 1};
+        int orders = 0, degree = 0;
+        for (int k = 0; k < 3; ++k) {
+            if (!whole && part != alone[k]) continue;
+            const Polynomial &a = *sides[k][0], &b = *sides[k][1];
+            const RationalCone cone = bulges ? RationalCone(H, Bulge{E[k], *from[k], *to[k]}, E[k], a, b) : RationalCone(H, E[k], E[k], a, b);
+            if (!cone.exists) return {};
+            sum[k] = cone.sum, powers[k] = power(a + b, cone.order);
+            orders += cone.order, degree = std::max(degree, cone.degree - cone.order);
+        }
+        if (degree + orders > kMostDegree) return {};
+        const Vec3<Polynomial> flat = bulges                ? Vec3<Polynomial>(u * A + v * B + w * C)
+                                      : part == Part::s1    ? Vec3<Polynomial>(H(v) * B)
+                                      : part == Part::s2    ? Vec3<Polynomial>(H(w) * C)
+                                      : part == Part::s3    ? Vec3<Polynomial>(H(u) * A)
+                                                            : Vec3<Polynomial>(Polynomial(-1) * (H(u) * A + H(v) * B + H(w) * C));
         std::vector<Polynomial> x(4);
         x[3] = powers[0] * powers[1] * powers[2];
         for (int axis = 0; axis < 3; ++axis) {
-            x[std::size_t(axis)] = x[3] * (bulges ? flat[axis] : -flat[axis]);
-            for (int k = 0; k < 3; ++k) x[std::size_t(axis)] = x[std::size_t(axis)] + cones[k].sum[axis] * powers[(k + 1) % 3] * powers[(k + 2) % 3];
+            x[std::size_t(axis)] = x[3] * flat[axis];
+            for (int k = 0; k < 3; ++k) x[std::size_t(axis)] = x[std::size_t(axis)] + sum[k][axis] * powers[(k + 1) % 3] * powers[(k + 2) % 3];
         }
         return x;
     }
