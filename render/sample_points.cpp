@@ -69,10 +69,10 @@ ISOPARM_INLINE void directions_loop(const Point& right, const Point& up, const P
 void points(Points& p) { points_loop(p); }
 void directions(const Point& right, const Point& up, const Point& forward, double scale, Directions& d) { directions_loop(right, up, forward, scale, d); }
 #ifdef ISOPARM_ISA_LOOPS
-ISOPARM_FOR_AVX2 void points_avx2(Points& p) { points_loop(p); }
-ISOPARM_FOR_AVX512 void points_avx512(Points& p) { points_loop(p); }
-ISOPARM_FOR_AVX2 void directions_avx2(const Point& right, const Point& up, const Point& forward, double scale, Directions& d) { directions_loop(right, up, forward, scale, d); }
-ISOPARM_FOR_AVX512 void directions_avx512(const Point& right, const Point& up, const Point& forward, double scale, Directions& d) { directions_loop(right, up, forward, scale, d); }
+ISOPARM_FOR_AVX2 void kernel_avx2_points(Points& p) { points_loop(p); }
+ISOPARM_FOR_AVX512 void kernel_avx512_points(Points& p) { points_loop(p); }
+ISOPARM_FOR_AVX2 void kernel_avx2_directions(const Point& right, const Point& up, const Point& forward, double scale, Directions& d) { directions_loop(right, up, forward, scale, d); }
+ISOPARM_FOR_AVX512 void kernel_avx512_directions(const Point& right, const Point& up, const Point& forward, double scale, Directions& d) { directions_loop(right, up, forward, scale, d); }
 #endif
 
 }  // namespace
@@ -88,8 +88,8 @@ void sample_points(const SampleOf* of, const int* dimension, int n, Vec2* out) {
     }
     switch (chosen_isa()) {
 #ifdef ISOPARM_ISA_LOOPS
-        case Isa::avx512: points_avx512(p); break;
-        case Isa::avx2: points_avx2(p); break;
+        case Isa::avx512: kernel_avx512_points(p); break;
+        case Isa::avx2: kernel_avx2_points(p); break;
 #endif
         default: points(p);
     }
@@ -106,8 +106,8 @@ void camera_rays(const Camera& camera, const Vec2* at, int n, Ray* out) {
     const double scale = 2 * camera.half_height / camera.height;
     switch (chosen_isa()) {
 #ifdef ISOPARM_ISA_LOOPS
-        case Isa::avx512: directions_avx512(camera.right, camera.up, camera.forward, scale, d); break;
-        case Isa::avx2: directions_avx2(camera.right, camera.up, camera.forward, scale, d); break;
+        case Isa::avx512: kernel_avx512_directions(camera.right, camera.up, camera.forward, scale, d); break;
+        case Isa::avx2: kernel_avx2_directions(camera.right, camera.up, camera.forward, scale, d); break;
 #endif
         default: directions(camera.right, camera.up, camera.forward, scale, d);
     }

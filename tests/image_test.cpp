@@ -95,6 +95,28 @@ TEST_F(ImageFiles, EightBitFilesAreWithinHalfAStep) {
         }
 }
 
+// Larger than what is compressed at once, with every filter of rows: even, sloping and noisy ones; a name that is not ASCII.
+TEST_F(ImageFiles, LargePngsReadBackAndKeepTheirTexts) {
+    Image image{640, 400, {}};
+    for (unsigned i = 0, x = 1; i < 640 * 400; ++i) {
+        const unsigned row = i / 640, column = i % 640;
+        x = x * 1664525u + 1013904223u;
+        const float value = row % 4 == 0 ? 0.5f : row % 4 == 1 ? static_cast<float>(column) / 640 : row % 4 == 2 ? static_cast<float>(row + column) / 1040 : static_cast<float>(x) * 0x1p-32f;
+        const float alpha = row < 300 ? 1.0f : static_cast<float>(column) / 640;
+        for (const float c : {value, 1 - value, 0.25f}) image.pixels.push_back(alpha * c);
+        image.pixels.push_back(alpha);
+    }
+    write_image(path("a.png"), image, {{"isoparm:title", "B\u00e9zier"}});
+    EXPECT_NE(bytes(path("a.png")).find("B\u00e9zier"), std::string::npos);
+    const Image back = read_image(path("a.png"));
+    ASSERT_EQ(back.pixels.size(), image.pixels.size());
+    for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
+        const float alpha = image.pixels[i + 3];
+        ASSERT_NEAR(back.pixels[i + 3], alpha, 0.5 / 255 + 1e-6) << i;
+        for (int k = 0; k < 3 && back.pixels[i + 3] > 0; ++k) ASSERT_NEAR(srgb(back.pixels[i + k] / back.pixels[i + 3]), srgb(image.pixels[i + k] / alpha), 0.5 / 255 + 1e-5) << i;
+    }
+}
+
 TEST_F(ImageFiles, FormatsWithoutAlphaShowThePictureOnWhite) {
     const Image image{2, 1, {0, 0, 0, 0, 0, 0, 0, 1}};
     write_image(path("a.ppm"), image, {});

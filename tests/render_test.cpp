@@ -297,6 +297,27 @@ TEST(Render, ACropIsAPartOfTheWhole) {
     EXPECT_THROW(render(everything(), options), Error);
 }
 
+// Their pixels share packets of rays, whichever of them are asked for.
+TEST(RenderThreads, FewSamplesAreTheSameInCropsTilesAndOnEveryThread) {
+    Scene scene = everything();
+    scene.objects.pop_back();  // what is translucent is traced ray by ray
+    for (const int samples : {1, 2, 3, 5, 8}) {
+        RenderOptions options;
+        options.samples = samples;
+        const Image whole = render(scene, options).image;
+        options.tile = 3;
+        {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 2);
+            EXPECT_EQ(render(scene, options).image.pixels, whole.pixels) << samples;
+        }
+        options.crop = {21, 7, 58, 43};
+        const Image part = render(scene, options).image;
+        for (int y = 0; y < part.height; ++y)
+            for (int x = 0; x < part.width; ++x)
+                for (int k = 0; k < 4; ++k) ASSERT_EQ(part.at(x, y)[k], whole.at(x + 21, y + 7)[k]) << samples << ": " << x << ' ' << y;
+    }
+}
+
 TEST(Render, BackgroundsAreTheirColourOrNothing) {
     Scene scene = everything();
     const Image coloured = render(scene, {}).image;
