@@ -139,6 +139,18 @@ std::optional<Point> unit_normal(const Patch& patch, const PointJet& jet, double
     return limit;
 }
 
+static double largest(const Point& p) { return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}); }
+
+/// Of derivatives with respect to a u and b v, which are the same curvatures.
+static void set_curvatures(SurfacePoint& s, double a, double b) {
+    const Point du = *s.du / a, dv = *s.dv / b;
+    const double E = dot(du, du), F = dot(du, dv), G = dot(dv, dv);
+    const double L = dot(*s.duu, *s.normal) / a / a, M = dot(*s.duv, *s.normal) / a / b, N = dot(*s.dvv, *s.normal) / b / b;
+    const double area = E * G - F * F;
+    s.gaussian = (L * N - M * M) / area;
+    s.mean = (E * N - 2 * F * M + G * L) / (2 * area);
+}
+
 SurfacePoint evaluate(const Patch& patch, double u, double v) {
     const Rect r = patch.rect();
     const bool inside = patch.domain() == Domain::quad ? u >= r.u0 && u <= r.u1 && v >= r.v0 && v <= r.v1 : u >= 0 && v >= 0 && u + v <= 1 + 4e-16;
@@ -156,11 +168,10 @@ SurfacePoint evaluate(const Patch& patch, double u, double v) {
     s.dvv = if_finite(2.0 * first_order(jet, 0, 2));
     s.normal = unit_normal(patch, jet, u, v);
     if (!s.du || !s.dv || !s.duu || !s.duv || !s.dvv || !s.normal || !ScaledDerivatives(patch, jet).regular()) return s;
-    const double E = dot(*s.du, *s.du), F = dot(*s.du, *s.dv), G = dot(*s.dv, *s.dv);
-    const double L = dot(*s.duu, *s.normal), M = dot(*s.duv, *s.normal), N = dot(*s.dvv, *s.normal);
-    const double area = E * G - F * F;
-    s.gaussian = (L * N - M * M) / area;
-    s.mean = (E * N - 2 * F * M + G * L) / (2 * area);
+    const double a = largest(*s.du), b = largest(*s.dv);
+    const bool usual = std::min(a, b) > 1e-60 && std::max(a, b) < 1e60;  // whose fourth powers, and what is taken from them, are doubles
+    set_curvatures(s, usual ? 1 : a, usual ? 1 : b);
+    if (!std::isfinite(s.gaussian.value_or(0)) || !std::isfinite(s.mean.value_or(0))) s.gaussian.reset(), s.mean.reset();
     return s;
 }
 

@@ -57,6 +57,16 @@ void await_end(std::size_t threads) {
     while (threads_of_process() > threads && std::chrono::steady_clock::now() < last) std::this_thread::sleep_for(std::chrono::microseconds(200));
 }
 
+/// OpenImageIO hands a new number of threads on to OpenEXR only when the next EXR file is opened. Until then OpenEXR keeps its threads, and a child
+/// that was forked would wait for threads that it does not have. Hence a file of one pixel, in memory.
+void hand_on_exr_threads() {
+    OIIO::Filesystem::IOVecOutput bytes;
+    const auto out = OIIO::ImageOutput::create("openexr");
+    const float pixel = 0;
+    if (!out || !out->set_ioproxy(&bytes) || !out->open("threads.exr", OIIO::ImageSpec(1, 1, 1, OIIO::TypeDesc::FLOAT)) || !out->write_image(OIIO::TypeDesc::FLOAT, &pixel) || !out->close())
+        (void)OIIO::geterror();
+}
+
 std::unique_ptr<OIIO::ImageInput> opened(const char* file) {
     OIIO::ImageSpec as_stored;
     as_stored.attribute("oiio:UnassociatedAlpha", 1);
@@ -466,10 +476,10 @@ int isoparm_image_finish(IsoparmImageWriter* file, IsoparmImageError* error) {
 }
 
 void isoparm_image_threads(int threads) {
+    OIIO::attribute("exr_threads", threads == 1 ? -1 : threads);
+    if (threads == 1) hand_on_exr_threads();  // lists the formats, too: once, and not in every child
     const int workers = OIIO::default_thread_pool()->size();  // asking makes the pool, if there was none
     const std::size_t before = workers > 0 ? threads_of_process() : 0;
     OIIO::attribute("threads", threads);
-    OIIO::attribute("exr_threads", threads == 1 ? -1 : threads);
-    (void)OIIO::ImageInput::create("openexr");  // lists its formats now, once, and not in every child
     if (threads == 1 && workers > 0) await_end(before > std::size_t(workers) ? before - std::size_t(workers) : 1);
 }

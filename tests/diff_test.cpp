@@ -11,10 +11,12 @@
 
 #include "error.h"
 #include "flip.h"
+#include "image.h"
 #include "image_decoder.h"
 #include "image_diff.h"
 #include "image_header.h"
 #include "image_layers.h"
+#include "image_loader.h"
 #include "run_program.h"
 #include "ssim.h"
 
@@ -318,6 +320,21 @@ TEST(ImageDecoder, LargeWholeNumbersAreNotRoundedAway) {
     const ImageDiff d = diff_images(t / "a.exr", t / "b.exr", {});
     EXPECT_EQ(d.verdict, DiffVerdict::fail);
     EXPECT_EQ(d.max, 2) << "not a fraction of 2^32";
+}
+
+TEST(ImageDecoder, ReadsAfterThreadsOfThisProcessHaveWritten) {
+    const test::TemporaryFolder t;
+    Image picture;
+    picture.width = picture.height = 512;
+    picture.pixels.assign(4 * 512 * 512, 0.25f);
+    image_module().threads(4);  // OpenEXR's, which the next file starts
+    write_image(t / "a.exr", picture, {});
+    ImageLimits limits;
+    limits.threads = 4, limits.seconds = 20;  // as many: the decoder used to wait for those that it did not have
+    ImageDecoder file(t / "a.exr", limits);
+    file.open();
+    file.begin(0, file.most_rows(0), RowKind::floats);
+    EXPECT_NO_THROW(file.block(0));
 }
 
 TEST(ImageDecoder, RefusesWhatIsTooLarge) {

@@ -8,13 +8,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <thread>
 
+#include "commands/interruption.h"
 #include "error.h"
+#include "io/atomic_file.h"
 
 namespace isoparm {
 namespace {
@@ -209,6 +212,22 @@ TEST_F(ImageFiles, GoToPipes) {
         EXPECT_EQ(got, bytes(file)) << extension;
         EXPECT_GT(got.size(), 100u);
     }
+}
+
+/// Nobody may ever read it, and a picture's first signal is otherwise only noted.
+TEST_F(ImageFiles, WaitForReadersOfPipesUntilTheFirstSignal) {
+    const std::string pipe = path("pipe.ppm");
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const auto wait = [&] {
+        ::alarm(20);
+        const Interruption interruption(true);
+        std::thread([] {
+            while (!writing_to_device()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            ::kill(::getpid(), SIGTERM);
+        }).detach();
+        write_atomically(pipe, [](std::ostream& out) { out << "P6"; });
+    };
+    EXPECT_EXIT(wait(), testing::KilledBySignal(SIGTERM), "");
 }
 
 }  // namespace

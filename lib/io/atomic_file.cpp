@@ -211,6 +211,18 @@ std::string target_of(const std::string& path) {
     if (target.empty()) fail(path, "cannot be written", errno);
     return target;
 }
+std::atomic<int> devices{0};  // that are being written
+static_assert(std::atomic<int>::is_always_lock_free);
+
+/// Opening a FIFO waits for its reader, and writing for room.
+void write_device(const std::string& path, const std::function<void(std::ostream&)>& write) {
+    struct Counted {
+        Counted() { ++devices; }
+        ~Counted() { --devices; }
+    } const counted;
+    write_stream(path, path, write);
+}
+
 /// Devices and pipes (/dev/stdout) are written as they are.
 bool is_device(const std::string& path) {
     struct stat found {};
@@ -226,7 +238,7 @@ void write_device_by_name(const std::string& path, const std::function<void(cons
     if (memory.file < 0) fail(path, "cannot make a file in memory for what goes there", errno);
     const std::string name = "/proc/self/fd/" + std::to_string(memory.file);
     write(name);
-    write_stream(path, path, [&](std::ostream& out) {
+    write_device(path, [&](std::ostream& out) {
         std::ifstream in(name, std::ios::binary);
         std::vector<char> bytes(1 << 16);
         while (in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || in.gcount() > 0) out.write(bytes.data(), in.gcount());
@@ -240,6 +252,8 @@ void remove_temporaries() {
     for (Slot& s : slots)
         if (s.ready.load() && s.owner == ::getpid()) ::unlink(s.name);
 }
+
+bool writing_to_device() { return devices.load() > 0; }
 
 std::string behind_links(const std::string& path) {
     constexpr int kMost = 40;  // as the kernel
@@ -257,7 +271,7 @@ std::string behind_links(const std::string& path) {
 
 void write_atomically(const std::string& path, const std::function<void(std::ostream&)>& write) {
     const std::string target = target_of(path);
-    if (is_device(path)) return write_stream(path, path, write);
+    if (is_device(path)) return write_device(path, write);
     Temporary temporary(target);
     write_stream(path, temporary.name(), write);
     temporary.sync_and_rename();

@@ -18,4 +18,6 @@ void write_atomically_by_name(const std::string& path, const std::function<void(
 std::string behind_links(const std::string& path);
 /// Removes what the process has not finished: before a crash ends it. May be called in a signal handler.
 void remove_temporaries();
+/// Whether a pipe or a device is being written, which may wait for another program. May be called in a signal handler.
+bool writing_to_device();
 }

@@ -16,7 +16,7 @@ std::atomic<bool> tell{false};
 static_assert(std::atomic<int>::is_always_lock_free);
 
 extern "C" void isoparm_interrupted(int signal) {
-    if (came.exchange(signal) != 0) {
+    if (came.exchange(signal) != 0 || writing_to_device()) {  // a FIFO may never get a reader
         remove_temporaries();
         ::signal(signal, SIG_DFL);
         ::raise(signal);

@@ -4,8 +4,8 @@
 
 namespace isoparm {
 
-/// While this lives, the first SIGINT or SIGTERM is only noted, and told on stderr; the second one ends the program at once, without leaving a
-/// temporary. A signal that is ignored stays ignored. There is one at a time.
+/// While this lives, the first SIGINT or SIGTERM is only noted, and told on stderr; the second one, and the first where a pipe or a device is being
+/// written, ends the program at once, without leaving a temporary. A signal that is ignored stays ignored. There is one at a time.
 class Interruption {
 public:
     /// `quiet`: it is not told.
