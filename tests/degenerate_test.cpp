@@ -89,6 +89,7 @@ TEST_P(Degenerate, IsAnsweredOrRefusedWithItsPlace) {
     };
     answered("info s.json", true);
     answered("eval s.json --surface s --at 0.5,0.25 --at 0,0 --json", true);
+    answered("eval s.json --surface s --at 0.5,0.25 --at 0,0", true);
     answered("check s.json --json", c.sized);
     for (const char* name : {"m.ply", "m.obj"}) {
         answered("tessellate s.json --quiet --report - -o " + std::string(name), c.sized);
