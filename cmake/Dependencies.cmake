@@ -1,5 +1,5 @@
 # Finds the libraries, around what is wrong with some of their CMake files. Targets afterwards: TBB::tbb,
-# OpenSubdiv::osdCPU, embree, JsonCpp::JsonCpp, OpenImageIO::OpenImageIO, PkgConfig::PANGOCAIRO, ZLIB::ZLIB.
+# OpenSubdiv::osdCPU, embree, JsonCpp::JsonCpp, OpenImageIO::OpenImageIO, PkgConfig::PANGOCAIRO, PNG::PNG.
 
 # Ends with the names under which systems ship what was not found: the row of packages.txt.
 function(isoparm_not_found what debian_package)
@@ -55,9 +55,9 @@ if(NOT TARGET PkgConfig::PANGOCAIRO)
     isoparm_not_found("Pango with Cairo" libpango1.0-dev)
 endif()
 
-find_package(ZLIB QUIET)
-if(NOT TARGET ZLIB::ZLIB)
-    isoparm_not_found(zlib zlib1g-dev)
+find_package(PNG QUIET)
+if(NOT TARGET PNG::PNG)
+    isoparm_not_found(libpng libpng-dev)
 endif()
 
 # Debian's OpenImageIO ends the configuration with a cryptic error if its programs, another package, are not there.

@@ -90,7 +90,7 @@ void Refinement::cut_rims(const std::vector<Start>& starts) {
         const Rim& rim = topology_.rims[r];
         std::vector<double> cuts;
         for (const RimUse& use : rim.uses) {
-            if (!use.affine || rim.collapsed) continue;
+            if (!use.affine) continue;
             std::vector<double> here;
             const auto [low, high] = std::minmax(use.t0, use.t1);
             for (const double t : starts[use.member].on_edge(surface_[use.member].patch, use.edge))
@@ -104,9 +104,12 @@ void Refinement::cut_rims(const std::vector<Start>& starts) {
         node.rim = r, node.a = rim.a, node.f0 = 0;
         for (const double f : cuts) {
             const Vec2 p = surface_[owner.member].patch.edge_point(owner.edge, owner.t0 + f * (owner.t1 - owner.t0));
-            node.f1 = f, node.b = std::uint32_t(positions_.size());
-            positions_.push_back(surface_[owner.member].patch.point(p.x, p.y));
-            shared_.push_back(1);
+            node.f1 = f, node.b = rim.a;
+            if (!rim.collapsed) {
+                node.b = std::uint32_t(positions_.size());
+                positions_.push_back(surface_[owner.member].patch.point(p.x, p.y));
+                shared_.push_back(1);
+            }
             rim_nodes_.push_back(node);
             node.f0 = f, node.a = node.b;
         }

@@ -1,4 +1,4 @@
-// png_file.h -- PNG files (ISO/IEC 15948), written without OpenImageIO: loading that takes longer than to draw many a figure.
+// png_file.h -- PNG files (ISO/IEC 15948), written by libpng: loading OpenImageIO takes longer than to draw many a figure.
 #pragma once
 #include <cstdint>
 #include <string>
