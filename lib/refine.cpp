@@ -25,6 +25,8 @@ template <class Count, class F> void for_all(std::size_t members, Count count, F
 
 /// Triangles that are bounded in one go.
 constexpr std::size_t kTogether = 64;
+/// Tolerances around a pole, where triangles smaller than one turn as they like: to ask for less there takes ever smaller triangles.
+constexpr double kAtPole = 4;
 /// Slack below this part of the tolerance need not be sharp.
 constexpr double kFew = 1e-6;
 
@@ -168,8 +170,10 @@ Refinement::Round Refinement::flip_and_mark(std::uint32_t member) {
 bool Refinement::turns_little(const PatchMesh& mesh, const PatchTriangle& t) const {
     if (turn_ == TriangleBound::unasked || t.proof.turn <= turn_ || !std::isfinite(turn_) || mesh.left_out(t)) return true;
     const auto [a, b, c] = mesh.vertices(t);
-    const auto near = [&](std::uint32_t p, std::uint32_t q) { return length(positions_[p] - positions_[q]) <= tolerance_; };
-    return !std::isfinite(t.proof.turn) && near(a, b) && near(b, c) && near(c, a);
+    const auto near = [&](const Point& p, const Point& q) { return length(p - q) <= tolerance_; };
+    const Point &x = positions_[a], &y = positions_[b], &z = positions_[c];
+    if (!(near(x, y) && near(y, z) && near(z, x))) return false;
+    return !std::isfinite(t.proof.turn) || std::any_of(mesh.poles.begin(), mesh.poles.end(), [&](const Point& pole) { return std::min({length(pole - x), length(pole - y), length(pole - z)}) <= kAtPole * tolerance_; });
 }
 
 bool PatchMesh::on_break(const PatchEdge& e) const {

@@ -60,6 +60,7 @@ struct PatchMesh {
     std::vector<std::uint32_t> marked;  // edges to be bisected, those on rims not included
     std::vector<std::unique_ptr<BoundCell>> cells;
     std::vector<double> breaks_u, breaks_v;  // of the patch
+    std::vector<Point> poles;                // its collapsed edges
 
     std::array<std::uint32_t, 3> vertices(const PatchTriangle& t) const { return {vertex[t.corner[0]], vertex[t.corner[1]], vertex[t.corner[2]]}; }
     /// Triangles that name a mesh vertex twice, at poles and seams, are segments and left out of the mesh.
@@ -114,7 +115,7 @@ public:
     /// What is proved about a triangle, the slack of all corners that count included.
     double bound_of(const PatchMesh& mesh, std::uint32_t triangle) const;
 
-    /// Does the triangle keep the limit of `turn`, or is it so small, and without a bound, that the search for one was given up?
+    /// Does the triangle keep the limit of `turn`, or is it smaller than the tolerance and at a pole, or without a bound, so that the search for one was given up?
     bool turns_little(const PatchMesh& mesh, const PatchTriangle& t) const;
 
     /// The largest of a patch, triangles that are left out included.

@@ -133,7 +133,9 @@ void Refinement::build_patch(std::uint32_t member, const Start& start) {
     std::array<Chain, 4> side;  // corners along each edge, in its direction
     for (int k = 0; k < patch.edges(); ++k)
         for (const EdgeRim& er : topology_.edges[member][k]) {
-            const RimUse& use = topology_.rims[er.rim].uses[er.use];
+            const Rim& rim = topology_.rims[er.rim];
+            const RimUse& use = rim.uses[er.use];
+            if (rim.collapsed) mesh.poles.push_back(positions_[rim.a]);
             Chain along;
             double reached = use.t0;
             for (auto i = rim_pieces_[er.rim]; i < rim_pieces_[er.rim + 1]; ++i) {

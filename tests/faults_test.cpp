@@ -119,6 +119,21 @@ TEST_F(Faults, OfCallsInPages) {
     expect_survives("diff in/a.png in/b.png --junit out/j.xml --html out/h.html", {{"j.xml", "old"}, {"h.html", "old"}}, 1);
 }
 
+/// What could not be compared for want of something that is there again is no reason to take the new image for the old one.
+TEST_F(Faults, OfReadingKeepReferences) {
+    make_pictures();
+    fs::create_directories(t / "out/refs"), fs::create_directories(t / "out/news");
+    fs::copy_file(t / "in/a.png", t / "out/refs/x.png"), fs::copy_file(t / "in/b.png", t / "out/news/x.png");
+    const Files old = files();
+    const std::string diff = "diff out/refs out/news --update", fault = "env LD_PRELOAD=" ISOPARM_FAULTS " ISOPARM_FAULT=read ISOPARM_FAULT_AT=1 ISOPARM_FAULT_ONCE=1";
+    const Outcome failed = isoparm(diff, fault);
+    EXPECT_EQ(failed.code, 4) << failed.err;
+    EXPECT_NE(failed.err.find("was not updated"), std::string::npos) << failed.err;
+    EXPECT_EQ(files(), old);
+    EXPECT_EQ(isoparm(diff).code, 0);
+    EXPECT_NE(files(), old);
+}
+
 TEST_F(Faults, OfMemoryAreTold) {
     const Files old{{"m.ply", "old"}};
     const std::string mesh = "tessellate in/coons.json --tolerance 0.1 -o out/m.ply";

@@ -193,13 +193,19 @@ void tell(const ImageDiff& d, const DiffRequest& request, const Options& options
     else if (!output_is_taken(options) && !options.quiet() && !options.has("-q")) print_diff_text(std::cout, d, request.limits);
 }
 
-/// NEW becomes the reference, unless it is damaged or holds what never passes: then the verdict stays.
+/// NEW becomes the reference, unless it is damaged or holds what never passes, or there was no comparison because something failed that does not fail again
+/// (no memory, no files left): then the verdict stays.
 void update(ImageDiff& d, const std::string& reference, const std::string& image, DiffRequest request, const Options& options) {
     if (d.verdict == DiffVerdict::pass || image.empty()) return;
     request.output.clear(), request.perceptual = false, request.preview = 0, request.mask.clear();
     request.limits.flip = request.limits.ssim = request.limits.rms = {};
+    if (d.verdict == DiffVerdict::unreadable && compare_files(reference, image, request).verdict != DiffVerdict::unreadable) {
+        std::fprintf(stderr, "isoparm: %s was not updated: it could not be compared, for a reason that has passed; compare again\n", printable(reference).c_str());
+        return;
+    }
     if (const ImageDiff self = compare_files(image, image, request); self.verdict != DiffVerdict::pass) {
-        if (!options.quiet()) std::fprintf(stderr, "isoparm: note: %s was not updated: %s\n", printable(reference).c_str(), verdict_line(self, request.limits).c_str());
+        if (!options.quiet() || self.verdict == DiffVerdict::unreadable)
+            std::fprintf(stderr, "isoparm: note: %s was not updated: %s\n", printable(reference).c_str(), verdict_line(self, request.limits).c_str());
         d.verdict = std::max(d.verdict == DiffVerdict::missing ? DiffVerdict::pass : d.verdict, self.verdict);
         return;
     }

@@ -13,6 +13,7 @@
 #include "heat_map.h"
 #include "json.h"
 #include "peer.h"
+#include "printable_text.h"
 #include "progress.h"
 #include "provenance.h"
 #include "sha256.h"
@@ -126,6 +127,13 @@ void check_folder(const StudyStore& store, const Study& study, const Options& op
     for (const StudyPlot& p : study_plots({}, study.methods))
         for (const char* extension : {".svg", ".pdf"}) outputs.push_back({"-o", store.path(p.file + extension)});
     check_outputs(options, outputs, inputs_of(study.scene));
+    for (const NamedFile& input : inputs_of(study.scene))  // files of all names go to these folders
+        for (const char* folder : {"runs", "heat"}) {
+            std::error_code code;
+            const auto of = std::filesystem::absolute(input.path, code).parent_path();
+            if (std::filesystem::equivalent(of, store.path(folder), code) && !code)
+                options.fail("-o: found the folder of " + printable(input.path) + ", which " + input.option + " is, expected one whose " + folder + "/ holds no file that is read");
+        }
     const std::string json = store.path("study.json");
     bool ours = false;
     try {
