@@ -2,11 +2,13 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <ostream>
+#include <sstream>
 
 #include "error.h"
 #include "io/atomic_file.h"
@@ -67,6 +69,9 @@ StudyRow read_row(const Json& file) {
     return row;
 }
 
+/// A JSON object, from behind its brace, with its digest as the first member.
+std::string sealed(const std::string& rest) { return "{\"sha256\": \"" + sha256(rest) + "\",\n " + rest; }
+
 }  // namespace
 
 StudyStore::StudyStore(std::string folder) : folder_(std::move(folder)) {
@@ -89,7 +94,9 @@ std::optional<StudyRow> StudyStore::find(const std::string& method, double toler
     note.clear();
     if (!fs::exists(file)) return {};
     try {
-        const Json json = Json::parse(read_text_file(file), file);
+        const std::string text = read_text_file(file);
+        const Json json = Json::parse(text, file);
+        if (text != sealed(text.substr(std::min(text.size(), sealed("").size())))) json.fail("found other contents than were written");
         StudyRow row = read_row(json);
         if (row.key != key || row.run.method != method || row.run.tolerance != tolerance) {
             note = file + ": of another scene, other options or another version of the program; its run is made again";
@@ -121,12 +128,12 @@ void StudyStore::save(const StudyRow& row) const {
     std::string heat;
     for (const std::string& name : row.heat)
         heat += (heat.empty() ? "" : ", ") + json_text(name) + ": " + json_text(sha256(read_text_file(path(name))));
-    write_atomically(path(run_file(r.method, r.tolerance)), [&](std::ostream& out) {
-        out << "{\"key\": " << json_text(row.key) << ",\n \"method\": " << json_text(r.method) << ", \"threads\": " << row.threads
-            << ",\n \"triangles\": " << r.triangles << ", \"vertices\": " << r.vertices;
-        each_number(r, [&](const char* key, const double& x) { out << ",\n \"" << key << "\": " << json_text(x); });
-        out << ",\n \"reason\": " << json_text(r.reason) << ",\n \"heat\": {" << heat << "}}\n";
-    });
+    std::ostringstream out;
+    out << "\"key\": " << json_text(row.key) << ",\n \"method\": " << json_text(r.method) << ", \"threads\": " << row.threads
+        << ",\n \"triangles\": " << r.triangles << ", \"vertices\": " << r.vertices;
+    each_number(r, [&](const char* key, const double& x) { out << ",\n \"" << key << "\": " << json_text(x); });
+    out << ",\n \"reason\": " << json_text(r.reason) << ",\n \"heat\": {" << heat << "}}\n";
+    write_atomically(path(run_file(r.method, r.tolerance)), [&](std::ostream& file) { file << sealed(out.str()); });
 }
 
 }  // namespace isoparm

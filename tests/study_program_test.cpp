@@ -152,6 +152,14 @@ TEST(StudyProgram, GoesOnWhereItWasAndMakesDamagedRunsAgain) {
     EXPECT_EQ(made(damaged), 1u) << damaged.err;
     EXPECT_NE(damaged.err.find("the file is damaged, its run is made again"), std::string::npos) << damaged.err;
 
+    std::string text = read_all(files[1].string());
+    char& digit = text[text.find("\"triangles\": ") + 13];
+    digit = digit == '9' ? '8' : char(digit + 1);
+    write_all(files[1].string(), text);
+    const auto changed = test::run(arguments(folder));
+    EXPECT_EQ(made(changed), 1u) << changed.err;
+    EXPECT_NE(changed.err.find("found other contents than were written; the file is damaged"), std::string::npos) << changed.err;
+
     write_all(folder + "/heat/fast-sampled.png", "no picture");
     const auto picture = test::run(arguments(folder));
     EXPECT_EQ(made(picture), 1u) << picture.err;
