@@ -322,7 +322,7 @@ TEST(ImageDecoder, LargeWholeNumbersAreNotRoundedAway) {
     EXPECT_EQ(d.max, 2) << "not a fraction of 2^32";
 }
 
-TEST(ImageDecoder, ReadsAfterThreadsOfThisProcessHaveWritten) {
+TEST(ImageDecoder, ReadsAfterThisProcessHasWrittenSideBySide) {
     const test::TemporaryFolder t;
     Image picture;
     picture.width = picture.height = 512;
