@@ -40,7 +40,7 @@ struct DrawingItem {
 using Drawing = std::vector<DrawingItem>;
 
 /// Of the white rim of a text: that of a faint one is fainter still, so that a hidden label does not bleach what hides it.
-inline double halo_opacity(double of_text) { return 0.85 * of_text * of_text; }
+inline double halo_opacity(double of_text) { return 0.85 * of_text * of_text * of_text * of_text; }
 
 /// A drawing on a part of a picture, seen only there; its pixels begin at (x,y) of the picture.
 struct DrawnPart {

@@ -31,7 +31,7 @@ std::vector<std::string> paper_files(const std::string& path);
 void write_paper(const std::string& path, PaperFigure figure, const Metadata& metadata);
 
 /// Of the white rim of a text whose opacity is for sRGB: about what halo_opacity() makes of light.
-inline double printed_halo(double of_text) { return 0.85 * of_text; }
+inline double printed_halo(double of_text) { return 0.85 * of_text * of_text; }
 
 /// As the format has it, without zeros at the end.
 std::string decimal(double x, const char* format = "%.3f");
