@@ -36,7 +36,7 @@ FreePatch::FreePatch(const Patch& patch, const PatchMesh& mesh, const std::vecto
         const PatchTriangle& from = mesh.triangles[i];
         FreeTriangle& t = triangles_[i];
         const auto corner = [&](int k) { return mesh.uv[from.corner[k]]; };
-        t.corner = from.corner, t.cell = from.cell->around(patch, box_of({corner(0), corner(1), corner(2)})), t.proof = from.proof, t.proved = true, t.left_out = mesh.left_out(from);
+        t.corner = from.corner, t.cell = from.cell->around(patch, box_of({corner(0), corner(1), corner(2)})), t.proof = from.proof, t.proved = true, t.left_out = mesh.left_out(from) || mesh.in_fan(from);
         for (int k = 0; k < 3; ++k) {
             const auto& side = mesh.edges[from.edge[k]].side;
             t.beside[k] = side[0] == i ? side[1] : side[0];

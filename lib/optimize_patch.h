@@ -37,7 +37,7 @@ struct FreeTriangle {
     TriangleBound proof{};
     bool proved = false;             // proof is that of these corners
     bool sharp = false;              // and there is no sharper one
-    bool live = true, left_out = false;
+    bool live = true, left_out = false;  // left out: of the mesh, or of a fan, which stays as it is
 
     int place(std::uint32_t c) const { return corner[0] == c ? 0 : corner[1] == c ? 1 : 2; }
 };

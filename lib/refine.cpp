@@ -34,8 +34,8 @@ constexpr double kFew = 1e-6;
 
 double PatchMesh::slack_of(const PatchTriangle& t) const { return std::max({slack[t.corner[0]], slack[t.corner[1]], slack[t.corner[2]]}); }
 
-Refinement::Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most, double turn)
-    : surface_(surface), topology_(topology), tolerance_(tolerance), measure_(measure), turn_(turn), positions_(topology.nodes), shared_(topology.nodes.size(), 1),
+Refinement::Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most, double turn, bool fans)
+    : surface_(surface), topology_(topology), tolerance_(tolerance), measure_(measure), turn_(turn), fans_(fans && measure == Measure::geometric), positions_(topology.nodes), shared_(topology.nodes.size(), 1),
       patches_(surface.size()) {
     start(most);
 }
@@ -44,9 +44,10 @@ void Refinement::replace(std::vector<PatchMesh> patches, std::vector<RimNode> ri
     positions_ = std::move(positions);
     rim_nodes_ = std::move(rim_nodes);
     for (std::size_t m = 0; m < patches_.size(); ++m) {
-        patches[m].cells = std::move(patches_[m].cells);
+        patches[m].cells = std::move(patches_[m].cells), patches[m].poles = std::move(patches_[m].poles), patches[m].fans = std::move(patches_[m].fans);
         patches_[m] = std::move(patches[m]);
         patches_[m].settled.assign(patches_[m].triangles.size(), kUnsettled);
+        patches_[m].find_fans();
         measure_slack(std::uint32_t(m), 0);
     }
     worst_slack_ = 0;
@@ -123,7 +124,10 @@ bool Refinement::bound_and_mark() {
         bound_fresh(patches_[m], std::uint32_t(m), i * kTogether, std::min((i + 1) * kTogether, patches_[m].fresh.size()));
     }, 1);
     std::vector<Round> rounds(patches_.size());
-    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) { rounds[m] = flip_and_mark(std::uint32_t(m)); });
+    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
+        bound_fans(std::uint32_t(m));
+        rounds[m] = flip_and_mark(std::uint32_t(m));
+    });
     predicted_ = double(triangle_count());
     worst_bound_ = 0, unbounded_ = 0;
     bool done = true;
@@ -250,7 +254,10 @@ void Refinement::mark(PatchMesh& mesh, std::uint32_t edge) {
 
 std::size_t Refinement::triangle_count() const {
     std::size_t n = 0;
-    for (const auto& p : patches_) n += p.triangles.size();
+    for (const auto& p : patches_) {
+        n += p.triangles.size();
+        if (!p.poles.empty()) n -= std::size_t(std::count_if(p.triangles.begin(), p.triangles.end(), [&](const PatchTriangle& t) { return p.left_out(t); }));
+    }
     return n;
 }
 

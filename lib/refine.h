@@ -49,6 +49,22 @@ struct PatchTriangle {
     TriangleBound proof{};                // slack of the corners not included
 };
 
+struct PatchMesh;
+
+/// The triangles that touch a collapsed edge of a rectangle, which are bounded together.
+struct PoleFan {
+    int edge = 0;                          // of the domain
+    bool along_u = true;                   // v = at there, else u = at
+    double at = 0;
+    std::vector<std::uint32_t> triangles;  // of the last round
+    bool settled = false;                  // that strips are better
+
+    bool on(const Vec2& p) const { return (along_u ? p.y : p.x) == at; }
+    bool touches(const PatchMesh& mesh, const PatchTriangle& t) const;
+    int apex(const PatchMesh& mesh, const PatchTriangle& t) const;
+    bool is_graph(const PatchMesh& mesh) const;
+};
+
 struct PatchMesh {
     std::vector<Vec2> uv;
     std::vector<std::uint32_t> vertex;  // mesh vertex of each corner
@@ -61,6 +77,7 @@ struct PatchMesh {
     std::vector<std::unique_ptr<BoundCell>> cells;
     std::vector<double> breaks_u, breaks_v;  // of the patch
     std::vector<Point> poles;                // its collapsed edges
+    std::vector<PoleFan> fans;               // those around which triangles are bounded together
 
     std::array<std::uint32_t, 3> vertices(const PatchTriangle& t) const { return {vertex[t.corner[0]], vertex[t.corner[1]], vertex[t.corner[2]]}; }
     /// Triangles that name a mesh vertex twice, at poles and seams, are segments and left out of the mesh.
@@ -68,6 +85,8 @@ struct PatchMesh {
         const auto [a, b, c] = vertices(t);
         return a == b || b == c || c == a;
     }
+    bool in_fan(const PatchTriangle& t) const;
+    void find_fans();
     /// Along a break of the patch, where the surface may jump by the rounding of its curves' breaks.
     bool on_break(const PatchEdge& e) const;
     /// The cell between breaks that holds a triangle.
@@ -83,8 +102,9 @@ class Refinement {
 public:
     /// Begins with grids that are about as fine as the tolerance needs; with single cells when those would have more than `most` triangles.
     /// `turn`: the largest tangent of the angle between a triangle and the surface's normals; geometric measure only. TriangleBound::none: any; or unasked.
+    /// `fans`: triangles at collapsed edges are bounded together; geometric measure only.
     Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most = 1e6,
-               double turn = TriangleBound::unasked);
+               double turn = TriangleBound::unasked, bool fans = false);
 
     /// Bounds all triangles that have no bound and marks the worst edge of those above the tolerance, unless turning an edge mends them;
     /// true when none is.
@@ -103,6 +123,7 @@ public:
     /// About how many triangles the grids to begin with would have ended with, where those had more than `most`; else 0.
     double planned_triangles() const { return planned_; }
 
+    /// Those at poles that are left out of the mesh not included.
     std::size_t triangle_count() const;
     /// What the last bound_and_mark() found: about how many triangles the tolerance needs, the largest bound above it, and
     /// over how many triangles nothing could be proved.
@@ -162,6 +183,9 @@ private:
     void bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const;
     const BoundCell* sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const;
     void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
+    TriangleBound bound_strip(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan, const PatchTriangle& t) const;
+    bool strips_are_better(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan) const;
+    void bound_fans(std::uint32_t member);
     struct Round {  // what a patch asks for
         std::vector<std::uint32_t> on_rims;  // edges to be marked
         double more = 0, worst = 0;          // triangles that will come of those above the tolerance; their largest bound
@@ -182,6 +206,7 @@ private:
     const double tolerance_;
     const Measure measure_;
     const double turn_;
+    const bool fans_;
     std::vector<Point> positions_;
     std::vector<char> shared_;                 // by mesh vertex: on a rim, so that several corners may be it
     std::vector<RimNode> rim_nodes_;

@@ -44,7 +44,7 @@ Refinement::Flip Refinement::flip_of(const PatchMesh& mesh, std::uint32_t i, int
     const PatchTriangle& o = mesh.triangles[j];
     const int m = int(std::find(o.edge.begin(), o.edge.end(), diagonal) - o.edge.begin());
     const auto a = t.corner[k], b = t.corner[(k + 1) % 3], c = t.corner[(k + 2) % 3], d = o.corner[(m + 2) % 3];
-    if (mesh.vertex[c] == mesh.vertex[d] || mesh.left_out(t) || mesh.left_out(o)) return {};
+    if (mesh.vertex[c] == mesh.vertex[d] || mesh.left_out(t) || mesh.left_out(o) || mesh.in_fan(t) || mesh.in_fan(o)) return {};
     const auto area = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) { return twice_area(mesh.uv[p], mesh.uv[q], mesh.uv[r]); };
     const double thin = 0.02 * (area(a, b, c) + area(b, a, d));  // both triangles have some area: the quadrilateral is convex
     if (!(area(a, d, c) > thin && area(d, b, c) > thin)) return {};

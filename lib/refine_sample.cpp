@@ -30,6 +30,26 @@ struct Samples {
     }
 };
 
+/// Of the strip above the base of a triangle of a fan; of an edge, which in a fan ends where the strips' sides do.
+Vec2 middle_of_strip(const PatchMesh& mesh, const PatchTriangle& t) {
+    Vec2 sum;
+    for (const auto c : t.corner) sum.x += mesh.uv[c].x, sum.y += mesh.uv[c].y;
+    for (const PoleFan& f : mesh.fans)
+        if (const int k = f.apex(mesh, t); k >= 0) {
+            const Vec2& a = mesh.uv[t.corner[std::size_t(k)]];
+            return f.along_u ? Vec2{0.5 * (sum.x - a.x), sum.y / 3} : Vec2{sum.x / 3, 0.5 * (sum.y - a.y)};
+        }
+    return {sum.x / 3, sum.y / 3};
+}
+Vec2 middle_of_side(const PatchMesh& mesh, const Vec2& a, const Vec2& b) {
+    for (const PoleFan& f : mesh.fans)
+        if (f.on(a) != f.on(b)) {
+            const Vec2 &base = f.on(a) ? b : a;
+            return f.along_u ? Vec2{base.x, 0.5 * a.y + 0.5 * b.y} : Vec2{0.5 * a.x + 0.5 * b.x, base.y};
+        }
+    return {0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y};
+}
+
 }  // namespace
 
 double Refinement::sampled_error() const {
@@ -45,7 +65,7 @@ double Refinement::sampled_error() const {
             for (std::size_t i = first; i < last; ++i) {
                 const PatchTriangle& t = mesh.triangles[i];
                 const Vec2 &a = mesh.uv[t.corner[0]], &b = mesh.uv[t.corner[1]], &c = mesh.uv[t.corner[2]];
-                if (!mesh.left_out(t)) samples.add({(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3}, std::uint32_t(i));
+                if (!mesh.left_out(t)) samples.add(mesh.in_fan(t) ? middle_of_strip(mesh, t) : Vec2{(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3}, std::uint32_t(i));
             }
             double most = 0;
             const std::vector<Point> exact = samples.on(patch);
@@ -61,7 +81,7 @@ double Refinement::sampled_error() const {
             for (std::size_t i = first; i < last; ++i) {
                 const PatchEdge& e = mesh.edges[i];
                 const Vec2 &a = mesh.uv[e.a], &b = mesh.uv[e.b];
-                if (e.child == kNone && mesh.vertex[e.a] != mesh.vertex[e.b]) samples.add({0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y}, std::uint32_t(i));
+                if (e.child == kNone && mesh.vertex[e.a] != mesh.vertex[e.b]) samples.add(middle_of_side(mesh, a, b), std::uint32_t(i));
             }
             double most = 0;
             const std::vector<Point> exact = samples.on(patch);

@@ -136,6 +136,11 @@ void Refinement::build_patch(std::uint32_t member, const Start& start) {
             const Rim& rim = topology_.rims[er.rim];
             const RimUse& use = rim.uses[er.use];
             if (rim.collapsed) mesh.poles.push_back(positions_[rim.a]);
+            if (rim.collapsed && fans_ && patch.domain() == Domain::quad && topology_.edges[member][k].size() == 1) {
+                const Vec2 p = patch.edge_point(k, 0);
+                const bool along_u = k == 0 || k == 2;
+                mesh.fans.push_back({k, along_u, along_u ? p.y : p.x, {}});
+            }
             Chain along;
             double reached = use.t0;
             for (auto i = rim_pieces_[er.rim]; i < rim_pieces_[er.rim + 1]; ++i) {

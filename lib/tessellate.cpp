@@ -37,6 +37,11 @@ std::string too_many(double needed, const TessellationOptions& options) {
 [[noreturn]] void give_up(const Refinement& refinement, const TessellationOptions& options, double needed) {
     std::ostringstream text;
     text.precision(6);
+    if (refinement.worst_bound() == 0 && options.normal_deviation == 0 && refinement.triangle_count() > options.max_triangles) {
+        text << "the tolerance " << options.tolerance << " takes " << (needed > double(refinement.triangle_count()) ? "at least " : "") << refinement.triangle_count() << " triangles (" << double(refinement.triangle_count()) * kBytes / 1e9
+             << " GB), the budget is " << options.max_triangles << ". Ask for a larger tolerance or raise the budget (--max-triangles).";
+        throw Error(ErrorKind::budget, text.str());
+    }
     text << (options.normal_deviation > 0 ? "tolerance and normals were" : "the tolerance " + to_text(options.tolerance) + " was") << " not reached: ";
     if (needed > double(options.max_triangles))
         text << too_many(needed, options);
@@ -205,7 +210,7 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     const bool turns = options.measure == Measure::geometric && (options.study || options.normal_deviation > 0);
     const double turn = options.normal_deviation > 0 ? tangent_down(options.normal_deviation) : turns ? TriangleBound::none : TriangleBound::unasked;
     const auto fast = [&] {
-        auto refined = std::make_unique<Refinement>(surface, topology, options.tolerance, options.measure, double(options.max_triangles), turn);
+        auto refined = std::make_unique<Refinement>(surface, topology, options.tolerance, options.measure, double(options.max_triangles), turn, options.fans && !options.bounds && !(options.normal_deviation > 0));
         refuse_hopeless(surface, *refined, options);
         refine(*refined, options);
         return refined;

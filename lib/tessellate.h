@@ -23,6 +23,8 @@ struct TessellationOptions {
     double normal_deviation = 0;             // degrees, below 90: largest angle between a triangle's normal and those of the surface over it; 0: any
     Quality quality = Quality::fast;
     bool bounds = false;                     // keep the bound of every triangle, MeshPart::bounds
+    bool fans = false;                       // triangles at a collapsed edge are bounded together, so that a cone has few: parameters inside such a triangle are not
+                                             // those of points near it. Without effect where `bounds` or `normal_deviation` ask about single triangles
 };
 
 struct SurfaceReport {

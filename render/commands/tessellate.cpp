@@ -223,6 +223,7 @@ int run(const std::vector<std::string>& arguments) {
     how.tolerance = tolerance - reserved;
     how.bounds = options.has("--certificate");
     how.study = options.has("--report");
+    how.fans = !free;
     how.measure = measure == "parametric" ? Measure::parametric : Measure::geometric;
     how.quality = quality == "optimal" ? Quality::optimal : Quality::fast;
     if (const auto degrees = options.number("--normals")) {
