@@ -139,10 +139,7 @@ bool Refinement::bound_and_mark() {
 /// Turns edges of fresh triangles of a patch, and marks its inner edges. Touches nothing of other patches.
 Refinement::Round Refinement::flip_and_mark(std::uint32_t member) {
     PatchMesh& mesh = patches_[member];
-    for (const auto i : mesh.fresh) {
-        const PatchTriangle& t = mesh.triangles[i];
-        if (!(t.proof.own(measure_) + mesh.slack_of(t) <= tolerance_)) flip_any(mesh, member, i, false);
-    }
+    flip_fresh(mesh, member);
     Round r;
     const auto mark_to_split = [&](std::uint32_t e) {
         if (mesh.edges[e].rim_node != kNone) r.on_rims.push_back(e);
@@ -184,7 +181,7 @@ double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const
     const PatchTriangle& t = mesh.triangles[triangle];
     double slack = mesh.slack_of(t);
     if (measure_ == Measure::parametric || !t.proof.quiet) return rounding::up(t.proof.parametric + slack);
-    std::array<Neighbour, 3> neighbours;
+    std::array<ProvedNeighbour, 3> neighbours;
     for (int k = 0; k < 3; ++k) {
         const auto& side = mesh.edges[t.edge[k]].side;
         const auto other = side[0] == triangle ? side[1] : side[0];

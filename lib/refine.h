@@ -13,6 +13,7 @@
 
 #include "bound_cell.h"
 #include "composite.h"
+#include "proof.h"
 #include "scalar/vec.h"
 #include "topology.h"
 
@@ -46,8 +47,9 @@ struct PatchTriangle {
     std::array<std::uint32_t, 3> corner{};
     std::array<std::uint32_t, 3> edge{};  // edge k joins corners k and k+1
     const BoundCell* cell = nullptr;
-    TriangleBound proof{};                // slack of the corners not included
+    Proof proof{};                        // slack of the corners not included
 };
+static_assert(sizeof(PatchTriangle) == 88, "there are millions of them");
 
 struct PatchMesh {
     std::vector<Vec2> uv;
@@ -171,6 +173,11 @@ private:
     bool may_lose(const PatchMesh& mesh) const;
     bool keeps(const PatchMesh& mesh, const PatchTriangle& t) const;
     struct Flip;
+    struct Flips;  // of one triangle
+    Flips flips_of(const PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle) const;
+    void bound_flips(const PatchMesh& mesh, std::uint32_t member, std::span<Flips> all) const;
+    const Flip* flip_first(PatchMesh& mesh, std::uint32_t member, Flips& flips, bool with_neighbours) const;
+    void flip_fresh(PatchMesh& mesh, std::uint32_t member) const;
     Flip flip_of(const PatchMesh& mesh, std::uint32_t triangle, int edge) const;
     bool in_vain(const PatchMesh& mesh, std::uint32_t member, const Flip& f) const;
     bool flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) const;
