@@ -32,8 +32,6 @@ constexpr double kFew = 1e-6;
 
 }  // namespace
 
-double PatchMesh::slack_of(const PatchTriangle& t) const { return std::max({slack[t.corner[0]], slack[t.corner[1]], slack[t.corner[2]]}); }
-
 Refinement::Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most, double turn)
     : surface_(surface), topology_(topology), tolerance_(tolerance), measure_(measure), turn_(turn), positions_(topology.nodes), shared_(topology.nodes.size(), 1),
       patches_(surface.size()) {
@@ -72,6 +70,9 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
             mesh.slack[i] = quick <= kFew * tolerance_ ? quick : slack_of(surface_[member].patch, p, x);
         }
     });
+    if (first == 0) mesh.most_slack = 0;
+    for (std::size_t i = first; i < mesh.slack.size(); ++i) mesh.most_slack = std::max(mesh.most_slack, mesh.slack[i]);
+    mesh.even_slack = mesh.most_slack <= kFew * tolerance_;
 }
 
 CornerData Refinement::corners_of(const PatchMesh& mesh, const PatchTriangle& t) const {
@@ -95,8 +96,6 @@ void Refinement::bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t 
 
 void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const {
     const Patch& patch = surface_[member].patch;
-    std::array<CornerData, kTogether> data;
-    std::array<TriangleBound, kTogether> bounds;
     std::array<PatchTriangle*, kTogether> here;
     for (PatchTriangle*& t : triangles) {
         if (t->cell->polynomial().exact()) continue;
@@ -108,10 +107,36 @@ void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std
         const BoundCell* cell = triangles[i]->cell;
         std::size_t n = 0;
         for (std::size_t k = i; k < triangles.size(); ++k)
-            if (triangles[k] && triangles[k]->cell == cell) here[n] = std::exchange(triangles[k], nullptr), data[n] = corners_of(mesh, *here[n]), ++n;
-        cell->bound_all(patch, {data.data(), n}, tolerance_, measure_, turn_, quick, bounds.data());
-        for (std::size_t k = 0; k < n; ++k) here[k]->proof = bounds[k];
+            if (triangles[k] && triangles[k]->cell == cell) here[n++] = std::exchange(triangles[k], nullptr);
+        bound_in(*cell, mesh, patch, {here.data(), n}, quick);
     }
+}
+
+/// BoundCell::bound_all() without copies of what passes at once, which is almost everything.
+void Refinement::bound_in(const BoundCell& cell, const PatchMesh& mesh, const Patch& patch, std::span<PatchTriangle* const> triangles, bool quick) const {
+    const LanesAsked asked{measure_, 1, false, turn_ != TriangleBound::unasked};
+    TriangleLanes lanes;
+    std::array<TriangleBound, TriangleLanes::size> bounds;
+    std::vector<CornerData> data;  // of those above the tolerance
+    std::vector<TriangleBound> above;
+    std::vector<PatchTriangle*> of;
+    for (std::size_t first = 0; first < triangles.size(); first += TriangleLanes::size) {
+        const std::size_t n = std::min(triangles.size() - first, bounds.size());
+        for (std::size_t i = 0; i < bounds.size(); ++i) {
+            const PatchTriangle& t = *triangles[first + std::min(i, n - 1)];
+            for (std::size_t k = 0; k < 3; ++k) lanes.set(i, k, mesh.uv[t.corner[k]], positions_[mesh.vertex[t.corner[k]]]);
+            lanes.slack[i] = mesh.slack_of(t);
+        }
+        bound_lanes(cell.polynomial(), lanes, int(n), asked, bounds.data());
+        for (std::size_t i = 0; i < n; ++i) {
+            PatchTriangle& t = *triangles[first + i];
+            t.proof = bounds[i];
+            if (!quick && !(bounds[i].own(measure_) <= tolerance_ - lanes.slack[i])) of.push_back(&t), above.push_back(bounds[i]), data.push_back(corners_of(mesh, t));
+        }
+    }
+    if (of.empty()) return;
+    cell.sharpen(patch, data, tolerance_, measure_, turn_, above.data());
+    for (std::size_t i = 0; i < of.size(); ++i) of[i]->proof = above[i];
 }
 
 const BoundCell* Refinement::sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const {
@@ -174,7 +199,7 @@ bool Refinement::turns_little(const PatchMesh& mesh, const PatchTriangle& t) con
 }
 
 bool PatchMesh::on_break(const PatchEdge& e) const {
-    return along_line(uv[e.a], uv[e.b], breaks_u, breaks_v);
+    return !(breaks_u.empty() && breaks_v.empty()) && along_line(uv[e.a], uv[e.b], breaks_u, breaks_v);
 }
 
 double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const {
@@ -183,12 +208,13 @@ double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const
     if (measure_ == Measure::parametric || !t.proof.quiet) return rounding::up(t.proof.parametric + slack);
     std::array<ProvedNeighbour, 3> neighbours;
     for (int k = 0; k < 3; ++k) {
-        const auto& side = mesh.edges[t.edge[k]].side;
-        const auto other = side[0] == triangle ? side[1] : side[0];
-        if (other == kNone || mesh.left_out(mesh.triangles[other]) || mesh.on_break(mesh.edges[t.edge[k]])) continue;
-        const auto& edges = mesh.triangles[other].edge;
-        neighbours[k] = {&mesh.triangles[other].proof, int(std::find(edges.begin(), edges.end(), t.edge[k]) - edges.begin())};
-        slack = std::max(slack, mesh.slack_of(mesh.triangles[other]));
+        const PatchEdge& edge = mesh.edges[t.edge[k]];
+        const auto beside = edge.side[0] == triangle ? edge.side[1] : edge.side[0];
+        if (beside == kNone) continue;
+        const PatchTriangle& other = mesh.triangles[beside];
+        if (!other.proof.quiet || mesh.on_break(edge)) continue;  // what is left out has no area, and is not quiet
+        neighbours[k] = {&other.proof, (other.edge[1] == t.edge[k]) + 2 * (other.edge[2] == t.edge[k])};
+        slack = std::max(slack, mesh.slack_of(other));
     }
     return rounding::up(geometric_bound(t.proof, neighbours) + slack);
 }
@@ -196,7 +222,7 @@ double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const
 double Refinement::worst_bound_of(std::size_t member) const {
     const PatchMesh& mesh = patches_[member];
     return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 1024), 0.0, [&](const auto& range, double worst) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) worst = std::max(worst, mesh.settled[i] != kUnsettled ? mesh.settled[i] : bound_of(mesh, std::uint32_t(i)));
+        for (std::size_t i = range.begin(); i < range.end(); ++i) worst = std::max(worst, mesh.settled[i] != kUnsettled ? double(mesh.settled[i]) : bound_of(mesh, std::uint32_t(i)));
         return worst;
     }, [](double a, double b) { return std::max(a, b); });
 }
@@ -209,7 +235,7 @@ bool Refinement::mark_with_neighbours() {
             if (patches_[m].settled[i] == kUnsettled) open[m].push_back(i);
     });
     for_all(patches_.size(), [&](std::size_t m) { return open[m].size(); }, [&](std::size_t m, std::size_t i) {
-        const double bound = bound_of(patches_[m], open[m][i]);
+        const RoundedUp bound = bound_of(patches_[m], open[m][i]);
         if (bound <= tolerance_) patches_[m].settled[open[m][i]] = bound;
     });
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {

@@ -4,6 +4,7 @@
 // patches around it share. Edges are bisected, so a mark on an edge is all that neighbours need to know; inside a cell, an edge may
 // be turned first where that is enough. Every round touches only what is new: fresh triangles, marked edges and the triangles beside them.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -57,7 +58,9 @@ struct PatchMesh {
     std::vector<double> slack;          // at least the distance of the mesh vertex from the exact patch at uv
     std::vector<PatchEdge> edges;
     std::vector<PatchTriangle> triangles;
-    std::vector<double> settled;        // the bound of each triangle with the neighbours that it has now, at most the tolerance; kUnsettled: not known
+    double most_slack = 0;              // of all corners
+    bool even_slack = false;            // most_slack serves all
+    std::vector<RoundedUp> settled;     // the bound of each triangle with the neighbours that it has now, at most the tolerance; kUnsettled: not known
     std::vector<std::uint32_t> fresh;   // triangles not bounded yet
     std::vector<std::uint32_t> marked;  // edges to be bisected, those on rims not included
     std::vector<std::unique_ptr<BoundCell>> cells;
@@ -74,8 +77,8 @@ struct PatchMesh {
     bool on_break(const PatchEdge& e) const;
     /// The cell between breaks that holds a triangle.
     const BoundCell* root_of(const std::array<std::uint32_t, 3>& corner) const;
-    /// At least the distance of a corner of the triangle from the surface.
-    double slack_of(const PatchTriangle& t) const;
+    /// At least the distance of a corner of the triangle from the surface; so little that the largest of the patch serves all, mostly.
+    double slack_of(const PatchTriangle& t) const { return even_slack ? most_slack : std::max(std::max(slack[t.corner[0]], slack[t.corner[1]]), slack[t.corner[2]]); }
 };
 
 /// t of edge_point() at a point of an edge of the domain.
@@ -163,6 +166,7 @@ private:
     /// 64 at most: eight at once where polynomials serve; `quick`: less sharply. Uses the list up.
     void bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const;
     const BoundCell* sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const;
+    void bound_in(const BoundCell& cell, const PatchMesh& mesh, const Patch& patch, std::span<PatchTriangle* const> triangles, bool quick) const;
     void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
     struct Round {  // what a patch asks for
         std::vector<std::uint32_t> on_rims;  // edges to be marked
