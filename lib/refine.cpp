@@ -48,12 +48,11 @@ void Refinement::replace(std::vector<PatchMesh> patches, std::vector<RimNode> ri
         measure_slack(std::uint32_t(m), 0);
     }
     worst_slack_ = 0;
-    collect_slack(std::vector<std::size_t>(patches_.size(), 0));
+    collect_slack();
 }
 
-void Refinement::collect_slack(const std::vector<std::size_t>& first) {
-    for (std::size_t m = 0; m < patches_.size(); ++m)
-        for (std::size_t i = first[m]; i < patches_[m].slack.size(); ++i) worst_slack_ = std::max(worst_slack_, patches_[m].slack[i]);
+void Refinement::collect_slack() {
+    for (const PatchMesh& mesh : patches_) worst_slack_ = std::max(worst_slack_, mesh.most_slack);
 }
 
 void Refinement::measure_slack(std::uint32_t member, std::size_t first) {

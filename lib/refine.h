@@ -160,7 +160,7 @@ private:
     void split_triangles(std::uint32_t member, std::uint32_t first_edge);
     void place_vertices(std::uint32_t member, std::size_t first_corner, std::uint32_t first_vertex);
     void measure_slack(std::uint32_t member, std::size_t first);
-    void collect_slack(const std::vector<std::size_t>& first);
+    void collect_slack();
     CornerData corners_of(const PatchMesh& mesh, const PatchTriangle& t) const;
     void bound(const PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
     /// 64 at most: eight at once where polynomials serve; `quick`: less sharply. Uses the list up.
