@@ -1,4 +1,4 @@
-#include "bound.h"
+#include "proof.h"
 
 #include <algorithm>
 #include <cmath>
@@ -157,19 +157,47 @@ TriangleBound bound_triangle(const Patch& patch, const std::array<Vec2, 3>& p, c
     return result;
 }
 
-double geometric_bound(const TriangleBound& t, const std::array<Neighbour, 3>& neighbours) {
+namespace {
+
+/// At least how far rounding to floats moves a unit vector: 2^-25 along each axis.
+constexpr double kMoved = 6e-8;
+
+const Point& unit_of(const TriangleBound& b) { return b.unit; }
+Point unit_of(const Proof& p) { return p.normal_of_plane(); }
+
+/// geometric_bound(); Bound and Side are TriangleBound and Neighbour, or what is kept of them.
+template <class Bound, class Side> double with_neighbours(const Bound& t, const std::array<Side, 3>& neighbours, const Bound* Side::*bound) {
     if (!t.quiet) return t.parametric;
     double most = t.normal;
     for (int k = 0; k < 3; ++k) {
-        const TriangleBound* other = neighbours[k].bound;
-        const double apart = other && other->quiet ? (length(t.unit - other->unit) + t.tilt + other->tilt) * (1 + 1e-14) + 1e-15 : 2;
+        const Bound* other = neighbours[k].*bound;
+        const double beside = t.beside[k], across = t.across[k];
+        const double apart = other && other->quiet ? (length(unit_of(t) - unit_of(*other)) + t.tilt + other->tilt) * (1 + 1e-14) + 1e-15 : 2;
         const double cosine = 1 - 0.5 * apart * apart;  // at most that of the angle between the planes
         // Over the neighbour, or where there is none, over this triangle alone.
-        const double beyond = cosine >= 0.95 ? std::max(t.beside[k], other->beside[neighbours[k].edge] / cosine) + t.across[k] * (apart / cosine)
-                                             : std::hypot(t.beside[k], t.across[k]);
+        const double beyond = cosine >= 0.95 ? std::max(beside, other->beside[neighbours[k].edge] / cosine) + across * (apart / cosine) : std::hypot(beside, across);
         most = std::max(most, beyond * (1 + 1e-14));
     }
-    return std::min(t.parametric, most);
+    return std::min<double>(t.parametric, most);
+}
+
+}  // namespace
+
+double geometric_bound(const TriangleBound& t, const std::array<Neighbour, 3>& neighbours) { return with_neighbours(t, neighbours, &Neighbour::bound); }
+double geometric_bound(const Proof& t, const std::array<ProvedNeighbour, 3>& neighbours) { return with_neighbours(t, neighbours, &ProvedNeighbour::proof); }
+
+Proof::Proof(const TriangleBound& b)
+    : parametric(b.parametric), normal(b.normal), beside{b.beside[0], b.beside[1], b.beside[2]}, across{b.across[0], b.across[1], b.across[2]},
+      unit{float(b.unit.x), float(b.unit.y), float(b.unit.z)}, tilt(b.tilt + kMoved), turn(b.turn), quiet(b.quiet), worst_edge(std::uint8_t(b.worst_edge) & 3),
+      worst_turn(std::uint8_t(b.worst_turn) & 3), worst_across(std::uint8_t(b.worst_across) & 3) {}
+
+Proof::operator TriangleBound() const {
+    TriangleBound b;
+    b.parametric = parametric, b.normal = normal, b.tilt = tilt, b.turn = turn;
+    for (int k = 0; k < 3; ++k) b.beside[k] = beside[k], b.across[k] = across[k];
+    b.unit = unit_of(*this);
+    b.quiet = quiet, b.worst_edge = worst_edge, b.worst_turn = worst_turn, b.worst_across = worst_across;
+    return b;
 }
 
 }  // namespace isoparm

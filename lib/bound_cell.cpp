@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "triangle_shape.h"
 
@@ -179,11 +180,25 @@ void BoundCell::sharpen(const Patch& patch, std::span<const CornerData> triangle
     }
 }
 
+namespace {
+
+LanesAsked asked_of(Measure measure, double turn) { return {measure, 1, false, turn != TriangleBound::unasked}; }
+std::vector<int> all_of(std::span<const CornerData> triangles) {
+    std::vector<int> all(triangles.size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+}
+
+}  // namespace
+
+void BoundCell::sharpen(const Patch& patch, std::span<const CornerData> triangles, double tolerance, Measure measure, double turn, TriangleBound* bounds) const {
+    sharpen(patch, triangles, all_of(triangles), tolerance, asked_of(measure, turn), bounds);
+}
+
 void BoundCell::bound_all(const Patch& patch, std::span<const CornerData> triangles, double tolerance, Measure measure, double turn, bool quick, TriangleBound* bounds) const {
-    const LanesAsked asked{measure, 1, false, turn != TriangleBound::unasked};
-    std::vector<int> all(triangles.size()), above;
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] = int(k);
-    in_lanes(*polynomial_, triangles, all, asked, [&](int k, const TriangleBound& b) {
+    const LanesAsked asked = asked_of(measure, turn);
+    std::vector<int> above;
+    in_lanes(*polynomial_, triangles, all_of(triangles), asked, [&](int k, const TriangleBound& b) {
         bounds[k] = b;
         if (!(b.own(measure) <= tolerance - triangles[std::size_t(k)].slack)) above.push_back(k);
     });

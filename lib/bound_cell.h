@@ -37,6 +37,8 @@ public:
     /// Bounds triangles of this cell, which is a sharp_cell() of each, by their own boxes and so as sharply as the above can: eight
     /// at once. `tolerance` is that of the mesh, the slack of the triangles included; `bounds` has their number. `quick`: less sharply. Thread-safe.
     void bound_all(const Patch& patch, std::span<const CornerData> triangles, double tolerance, Measure measure, double turn, bool quick, TriangleBound* bounds) const;
+    /// The sharper part of bound_all() where the first is done: `bounds` hold what bound_lanes() says of all these triangles, which are above the tolerance.
+    void sharpen(const Patch& patch, std::span<const CornerData> triangles, double tolerance, Measure measure, double turn, TriangleBound* bounds) const;
     /// A cell of the tree below this one that is not much wider than the triangle.
     const BoundCell* around(const Patch& patch, const Box& box) const;
 

@@ -1,5 +1,7 @@
 #include "composite.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -55,10 +57,11 @@ struct Top {
 };
 
 struct Tops {
-    double du, dv;                // of the grid
+    double du = 0, dv = 0;        // of the grid
     std::array<Top, 6> top;       // x, -x, y, -y, z, -z
     static double height(std::size_t way, const Point& p) { return way % 2 ? -p[int(way / 2)] : p[int(way / 2)]; }
 
+    Tops() = default;
     explicit Tops(const Patch& patch) {
         const Rect r = patch.rect();
         const std::size_t nu = 16 * (patch.breaks_u().size() + 1), nv = 16 * (patch.breaks_v().size() + 1);
@@ -97,13 +100,12 @@ Bounds united(const Bounds& a, const Bounds& b) {
 
 Bounds bounding_box(const Composite& surface) {
     Bounds box = nothing();
-    std::vector<Tops> tops;
+    std::vector<Tops> tops(surface.size());
+    tbb::parallel_for(std::size_t(0), surface.size(), [&](std::size_t m) { tops[m] = Tops(surface[m].patch); });
     std::array<double, 6> highest;
     highest.fill(-kHuge);
-    for (const auto& member : surface) {
-        tops.emplace_back(member.patch);
-        for (std::size_t way = 0; way < 6; ++way) highest[way] = std::max(highest[way], tops.back().top[way].height);
-    }
+    for (const Tops& t : tops)
+        for (std::size_t way = 0; way < 6; ++way) highest[way] = std::max(highest[way], t.top[way].height);
     // Only from near the highest samples of all.
     for (std::size_t m = 0; m < surface.size(); ++m)
         for (std::size_t way = 0; way < 6; ++way) {

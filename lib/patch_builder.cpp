@@ -21,12 +21,39 @@ Chain backwards(const Chain& c) { return Chain(c.rbegin(), c.rend()); }
 }  // namespace
 
 void PatchBuilder::strip(const Chain& outer, const Chain& inner, const Bends& bends) {
-    for (const Corners& t : in_step(outer, inner, bends)) triangle(t[0], t[1], t[2]);
+    in_step(steps(outer, inner, bends));
 }
 void PatchBuilder::ragged_strip(const Chain& outer, const Chain& inner, const Bends& bends) {
-    std::vector<Corners> triangles = in_step(outer, inner, bends);
-    if (!std::all_of(triangles.begin(), triangles.end(), [&](const Corners& t) { return left(t[0], t[1], t[2]); })) triangles = monotone(outer, inner);
-    for (const Corners& t : triangles) triangle(t[0], t[1], t[2]);
+    const std::vector<Corners> triangles = steps(outer, inner, bends);
+    if (std::all_of(triangles.begin(), triangles.end(), [&](const Corners& t) { return left(t[0], t[1], t[2]); })) return in_step(triangles);
+    for (const Corners& t : monotone(outer, inner)) triangle(t[0], t[1], t[2]);
+}
+
+void PatchBuilder::in_step(const std::vector<Corners>& triangles) {
+    // The corners of a triangle are outer, further on one chain, inner: its third edge is shared with the triangle before, and one of the others with that behind.
+    std::uint32_t before = kNone;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const auto [a, b, c] = triangles[i];
+        const bool last = i + 1 == triangles.size();
+        const bool on_outer = last || triangles[i + 1][0] == b;  // else b is the next corner of the inner chain
+        const auto here = before != kNone ? before : kNone;
+        std::uint32_t ab, bc, ca;
+        const auto along = [&](std::uint32_t p, std::uint32_t q) { return edge(p, q); };
+        const auto next = [&](std::uint32_t p, std::uint32_t q) { return last ? edge(p, q) : edge_within(p, q); };
+        if (mirrored_) {
+            ca = here != kNone ? here : edge(a, c);
+            bc = on_outer ? next(c, b) : along(c, b);
+            ab = on_outer ? along(b, a) : next(b, a);
+            add({a, c, b}, {ca, bc, ab});
+            before = on_outer ? bc : ab;
+        } else {
+            ab = on_outer ? along(a, b) : next(a, b);
+            bc = on_outer ? next(b, c) : along(b, c);
+            ca = here != kNone ? here : edge(c, a);
+            add({a, b, c}, {ab, bc, ca});
+            before = on_outer ? bc : ab;
+        }
+    }
 }
 
 bool PatchBuilder::left(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
@@ -34,7 +61,7 @@ bool PatchBuilder::left(std::uint32_t a, std::uint32_t b, std::uint32_t c) const
     const double x = (q.x - p.x) * (r.y - p.y), y = (q.y - p.y) * (r.x - p.x);
     return (mirrored_ ? y - x : x - y) > 0x1p-50 * (std::fabs(x) + std::fabs(y));
 }
-std::vector<PatchBuilder::Corners> PatchBuilder::in_step(const Chain& outer, const Chain& inner, const Bends& bends) const {
+std::vector<PatchBuilder::Corners> PatchBuilder::steps(const Chain& outer, const Chain& inner, const Bends& bends) const {
     const auto& uv = mesh_.uv;
     const Along way = along(mesh_.uv, outer);
     const auto reached = [&](const Chain& c, std::size_t i) { return way.of({0.5 * uv[c[i]].x + 0.5 * uv[c[i + 1]].x, 0.5 * uv[c[i]].y + 0.5 * uv[c[i + 1]].y}); };

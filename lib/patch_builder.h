@@ -38,15 +38,7 @@ public:
     }
     void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         if (mirrored_) std::swap(b, c);
-        PatchTriangle t;
-        t.corner = {a, b, c};
-        t.edge = {edge(a, b), edge(b, c), edge(c, a)};
-        t.cell = mesh_.cells.back().get();
-        const auto index = std::uint32_t(mesh_.triangles.size());
-        for (const auto e : t.edge) mesh_.edges[e].side[mesh_.edges[e].side[0] != kNone] = index;
-        mesh_.fresh.push_back(index);
-        mesh_.triangles.push_back(t);
-        mesh_.settled.push_back(kUnsettled);
+        add({a, b, c}, {edge(a, b), edge(b, c), edge(c, a)});
     }
     /// Turns all triangles over: for chains in exchanged parameters.
     void mirror(bool mirrored) { mirrored_ = mirrored; }
@@ -58,10 +50,29 @@ public:
 private:
     using Corners = std::array<std::uint32_t, 3>;
 
+    void add(const Corners& corner, const std::array<std::uint32_t, 3>& edge) {
+        PatchTriangle t;
+        t.corner = corner, t.edge = edge;
+        t.cell = mesh_.cells.back().get();
+        const auto index = std::uint32_t(mesh_.triangles.size());
+        for (const auto e : t.edge) mesh_.edges[e].side[mesh_.edges[e].side[0] != kNone] = index;
+        mesh_.fresh.push_back(index);
+        mesh_.triangles.push_back(t);
+        mesh_.settled.push_back(kUnsettled);
+    }
+    /// An edge that nothing else will ask for, and that is not there yet.
+    std::uint32_t edge_within(std::uint32_t a, std::uint32_t b) {
+        mesh_.edges.emplace_back();
+        mesh_.edges.back().a = a, mesh_.edges.back().b = b;
+        next_.push_back(kNone);
+        return std::uint32_t(mesh_.edges.size() - 1);
+    }
+    /// Triangles in step between two chains: each begins with the side that it shares with the one before.
+    void in_step(const std::vector<Corners>& triangles);
     /// Do three corners turn to the left, by more than rounding?
     bool left(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
     /// Each triangle has a piece of one chain and a corner of the other.
-    std::vector<Corners> in_step(const Chain& outer, const Chain& inner, const Bends& bends) const;
+    std::vector<Corners> steps(const Chain& outer, const Chain& inner, const Bends& bends) const;
     /// The polygon between the chains, which are monotone along the outer one (Garey, Johnson, Preparata and Tarjan 1978).
     std::vector<Corners> monotone(const Chain& outer, const Chain& inner) const;
 

@@ -32,8 +32,6 @@ constexpr double kFew = 1e-6;
 
 }  // namespace
 
-double PatchMesh::slack_of(const PatchTriangle& t) const { return std::max({slack[t.corner[0]], slack[t.corner[1]], slack[t.corner[2]]}); }
-
 Refinement::Refinement(const Composite& surface, const Topology& topology, double tolerance, Measure measure, double most, double turn, bool fans)
     : surface_(surface), topology_(topology), tolerance_(tolerance), measure_(measure), turn_(turn), fans_(fans && measure == Measure::geometric), positions_(topology.nodes), shared_(topology.nodes.size(), 1),
       patches_(surface.size()) {
@@ -51,12 +49,11 @@ void Refinement::replace(std::vector<PatchMesh> patches, std::vector<RimNode> ri
         measure_slack(std::uint32_t(m), 0);
     }
     worst_slack_ = 0;
-    collect_slack(std::vector<std::size_t>(patches_.size(), 0));
+    collect_slack();
 }
 
-void Refinement::collect_slack(const std::vector<std::size_t>& first) {
-    for (std::size_t m = 0; m < patches_.size(); ++m)
-        for (std::size_t i = first[m]; i < patches_[m].slack.size(); ++i) worst_slack_ = std::max(worst_slack_, patches_[m].slack[i]);
+void Refinement::collect_slack() {
+    for (const PatchMesh& mesh : patches_) worst_slack_ = std::max(worst_slack_, mesh.most_slack);
 }
 
 void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
@@ -73,6 +70,9 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
             mesh.slack[i] = quick <= kFew * tolerance_ ? quick : slack_of(surface_[member].patch, p, x);
         }
     });
+    if (first == 0) mesh.most_slack = 0;
+    for (std::size_t i = first; i < mesh.slack.size(); ++i) mesh.most_slack = std::max(mesh.most_slack, mesh.slack[i]);
+    mesh.even_slack = mesh.most_slack <= kFew * tolerance_;
 }
 
 CornerData Refinement::corners_of(const PatchMesh& mesh, const PatchTriangle& t) const {
@@ -96,8 +96,6 @@ void Refinement::bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t 
 
 void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const {
     const Patch& patch = surface_[member].patch;
-    std::array<CornerData, kTogether> data;
-    std::array<TriangleBound, kTogether> bounds;
     std::array<PatchTriangle*, kTogether> here;
     for (PatchTriangle*& t : triangles) {
         if (t->cell->polynomial().exact()) continue;
@@ -109,10 +107,36 @@ void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std
         const BoundCell* cell = triangles[i]->cell;
         std::size_t n = 0;
         for (std::size_t k = i; k < triangles.size(); ++k)
-            if (triangles[k] && triangles[k]->cell == cell) here[n] = std::exchange(triangles[k], nullptr), data[n] = corners_of(mesh, *here[n]), ++n;
-        cell->bound_all(patch, {data.data(), n}, tolerance_, measure_, turn_, quick, bounds.data());
-        for (std::size_t k = 0; k < n; ++k) here[k]->proof = bounds[k];
+            if (triangles[k] && triangles[k]->cell == cell) here[n++] = std::exchange(triangles[k], nullptr);
+        bound_in(*cell, mesh, patch, {here.data(), n}, quick);
     }
+}
+
+/// BoundCell::bound_all() without copies of what passes at once, which is almost everything.
+void Refinement::bound_in(const BoundCell& cell, const PatchMesh& mesh, const Patch& patch, std::span<PatchTriangle* const> triangles, bool quick) const {
+    const LanesAsked asked{measure_, 1, false, turn_ != TriangleBound::unasked};
+    TriangleLanes lanes;
+    std::array<TriangleBound, TriangleLanes::size> bounds;
+    std::vector<CornerData> data;  // of those above the tolerance
+    std::vector<TriangleBound> above;
+    std::vector<PatchTriangle*> of;
+    for (std::size_t first = 0; first < triangles.size(); first += TriangleLanes::size) {
+        const std::size_t n = std::min(triangles.size() - first, bounds.size());
+        for (std::size_t i = 0; i < bounds.size(); ++i) {
+            const PatchTriangle& t = *triangles[first + std::min(i, n - 1)];
+            for (std::size_t k = 0; k < 3; ++k) lanes.set(i, k, mesh.uv[t.corner[k]], positions_[mesh.vertex[t.corner[k]]]);
+            lanes.slack[i] = mesh.slack_of(t);
+        }
+        bound_lanes(cell.polynomial(), lanes, int(n), asked, bounds.data());
+        for (std::size_t i = 0; i < n; ++i) {
+            PatchTriangle& t = *triangles[first + i];
+            t.proof = bounds[i];
+            if (!quick && !(bounds[i].own(measure_) <= tolerance_ - lanes.slack[i])) of.push_back(&t), above.push_back(bounds[i]), data.push_back(corners_of(mesh, t));
+        }
+    }
+    if (of.empty()) return;
+    cell.sharpen(patch, data, tolerance_, measure_, turn_, above.data());
+    for (std::size_t i = 0; i < of.size(); ++i) of[i]->proof = above[i];
 }
 
 const BoundCell* Refinement::sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const {
@@ -143,10 +167,7 @@ bool Refinement::bound_and_mark() {
 /// Turns edges of fresh triangles of a patch, and marks its inner edges. Touches nothing of other patches.
 Refinement::Round Refinement::flip_and_mark(std::uint32_t member) {
     PatchMesh& mesh = patches_[member];
-    for (const auto i : mesh.fresh) {
-        const PatchTriangle& t = mesh.triangles[i];
-        if (!(t.proof.own(measure_) + mesh.slack_of(t) <= tolerance_)) flip_any(mesh, member, i, false);
-    }
+    flip_fresh(mesh, member);
     Round r;
     const auto mark_to_split = [&](std::uint32_t e) {
         if (mesh.edges[e].rim_node != kNone) r.on_rims.push_back(e);
@@ -181,21 +202,22 @@ bool Refinement::turns_little(const PatchMesh& mesh, const PatchTriangle& t) con
 }
 
 bool PatchMesh::on_break(const PatchEdge& e) const {
-    return along_line(uv[e.a], uv[e.b], breaks_u, breaks_v);
+    return !(breaks_u.empty() && breaks_v.empty()) && along_line(uv[e.a], uv[e.b], breaks_u, breaks_v);
 }
 
 double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const {
     const PatchTriangle& t = mesh.triangles[triangle];
     double slack = mesh.slack_of(t);
     if (measure_ == Measure::parametric || !t.proof.quiet) return rounding::up(t.proof.parametric + slack);
-    std::array<Neighbour, 3> neighbours;
+    std::array<ProvedNeighbour, 3> neighbours;
     for (int k = 0; k < 3; ++k) {
-        const auto& side = mesh.edges[t.edge[k]].side;
-        const auto other = side[0] == triangle ? side[1] : side[0];
-        if (other == kNone || mesh.left_out(mesh.triangles[other]) || mesh.on_break(mesh.edges[t.edge[k]])) continue;
-        const auto& edges = mesh.triangles[other].edge;
-        neighbours[k] = {&mesh.triangles[other].proof, int(std::find(edges.begin(), edges.end(), t.edge[k]) - edges.begin())};
-        slack = std::max(slack, mesh.slack_of(mesh.triangles[other]));
+        const PatchEdge& edge = mesh.edges[t.edge[k]];
+        const auto beside = edge.side[0] == triangle ? edge.side[1] : edge.side[0];
+        if (beside == kNone) continue;
+        const PatchTriangle& other = mesh.triangles[beside];
+        if (!other.proof.quiet || mesh.on_break(edge)) continue;  // what is left out has no area, and is not quiet
+        neighbours[k] = {&other.proof, (other.edge[1] == t.edge[k]) + 2 * (other.edge[2] == t.edge[k])};
+        slack = std::max(slack, mesh.slack_of(other));
     }
     return rounding::up(geometric_bound(t.proof, neighbours) + slack);
 }
@@ -203,7 +225,7 @@ double Refinement::bound_of(const PatchMesh& mesh, std::uint32_t triangle) const
 double Refinement::worst_bound_of(std::size_t member) const {
     const PatchMesh& mesh = patches_[member];
     return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 1024), 0.0, [&](const auto& range, double worst) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) worst = std::max(worst, mesh.settled[i] != kUnsettled ? mesh.settled[i] : bound_of(mesh, std::uint32_t(i)));
+        for (std::size_t i = range.begin(); i < range.end(); ++i) worst = std::max(worst, mesh.settled[i] != kUnsettled ? double(mesh.settled[i]) : bound_of(mesh, std::uint32_t(i)));
         return worst;
     }, [](double a, double b) { return std::max(a, b); });
 }
@@ -216,7 +238,7 @@ bool Refinement::mark_with_neighbours() {
             if (patches_[m].settled[i] == kUnsettled) open[m].push_back(i);
     });
     for_all(patches_.size(), [&](std::size_t m) { return open[m].size(); }, [&](std::size_t m, std::size_t i) {
-        const double bound = bound_of(patches_[m], open[m][i]);
+        const RoundedUp bound = bound_of(patches_[m], open[m][i]);
         if (bound <= tolerance_) patches_[m].settled[open[m][i]] = bound;
     });
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {

@@ -4,6 +4,7 @@
 // patches around it share. Edges are bisected, so a mark on an edge is all that neighbours need to know; inside a cell, an edge may
 // be turned first where that is enough. Every round touches only what is new: fresh triangles, marked edges and the triangles beside them.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -13,6 +14,7 @@
 
 #include "bound_cell.h"
 #include "composite.h"
+#include "proof.h"
 #include "scalar/vec.h"
 #include "topology.h"
 
@@ -46,8 +48,9 @@ struct PatchTriangle {
     std::array<std::uint32_t, 3> corner{};
     std::array<std::uint32_t, 3> edge{};  // edge k joins corners k and k+1
     const BoundCell* cell = nullptr;
-    TriangleBound proof{};                // slack of the corners not included
+    Proof proof{};                        // slack of the corners not included
 };
+static_assert(sizeof(PatchTriangle) == 88, "there are millions of them");
 
 struct PatchMesh;
 
@@ -71,7 +74,9 @@ struct PatchMesh {
     std::vector<double> slack;          // at least the distance of the mesh vertex from the exact patch at uv
     std::vector<PatchEdge> edges;
     std::vector<PatchTriangle> triangles;
-    std::vector<double> settled;        // the bound of each triangle with the neighbours that it has now, at most the tolerance; kUnsettled: not known
+    double most_slack = 0;              // of all corners
+    bool even_slack = false;            // most_slack serves all
+    std::vector<RoundedUp> settled;     // the bound of each triangle with the neighbours that it has now, at most the tolerance; kUnsettled: not known
     std::vector<std::uint32_t> fresh;   // triangles not bounded yet
     std::vector<std::uint32_t> marked;  // edges to be bisected, those on rims not included
     std::vector<std::unique_ptr<BoundCell>> cells;
@@ -91,8 +96,8 @@ struct PatchMesh {
     bool on_break(const PatchEdge& e) const;
     /// The cell between breaks that holds a triangle.
     const BoundCell* root_of(const std::array<std::uint32_t, 3>& corner) const;
-    /// At least the distance of a corner of the triangle from the surface.
-    double slack_of(const PatchTriangle& t) const;
+    /// At least the distance of a corner of the triangle from the surface; so little that the largest of the patch serves all, mostly.
+    double slack_of(const PatchTriangle& t) const { return even_slack ? most_slack : std::max(std::max(slack[t.corner[0]], slack[t.corner[1]]), slack[t.corner[2]]); }
 };
 
 /// t of edge_point() at a point of an edge of the domain.
@@ -176,12 +181,13 @@ private:
     void split_triangles(std::uint32_t member, std::uint32_t first_edge);
     void place_vertices(std::uint32_t member, std::size_t first_corner, std::uint32_t first_vertex);
     void measure_slack(std::uint32_t member, std::size_t first);
-    void collect_slack(const std::vector<std::size_t>& first);
+    void collect_slack();
     CornerData corners_of(const PatchMesh& mesh, const PatchTriangle& t) const;
     void bound(const PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
     /// 64 at most: eight at once where polynomials serve; `quick`: less sharply. Uses the list up.
     void bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const;
     const BoundCell* sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const;
+    void bound_in(const BoundCell& cell, const PatchMesh& mesh, const Patch& patch, std::span<PatchTriangle* const> triangles, bool quick) const;
     void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
     TriangleBound bound_strip(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan, const PatchTriangle& t) const;
     bool strips_are_better(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan) const;
@@ -195,6 +201,11 @@ private:
     bool may_lose(const PatchMesh& mesh) const;
     bool keeps(const PatchMesh& mesh, const PatchTriangle& t) const;
     struct Flip;
+    struct Flips;  // of one triangle
+    Flips flips_of(const PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle) const;
+    void bound_flips(const PatchMesh& mesh, std::uint32_t member, std::span<Flips> all) const;
+    const Flip* flip_first(PatchMesh& mesh, std::uint32_t member, Flips& flips, bool with_neighbours) const;
+    void flip_fresh(PatchMesh& mesh, std::uint32_t member) const;
     Flip flip_of(const PatchMesh& mesh, std::uint32_t triangle, int edge) const;
     bool in_vain(const PatchMesh& mesh, std::uint32_t member, const Flip& f) const;
     bool flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) const;

@@ -6,6 +6,8 @@
 namespace isoparm {
 namespace {
 
+constexpr std::size_t kFlipsTogether = 10;  // triangles whose flips, two by three each at most, are bounded in one go
+
 double twice_area(const Vec2& a, const Vec2& b, const Vec2& c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
 /// Lets the edges of triangle i know it, which are known to lie beside i or j.
@@ -32,6 +34,10 @@ struct Refinement::Flip {
     std::uint32_t i = kNone, j = kNone, diagonal = kNone, from = 0, to = 0;  // kNone: it cannot be turned
     PatchTriangle left, right;
     bool together = false;  // polynomials serve both
+};
+struct Refinement::Flips {
+    std::array<Flip, 3> list;
+    std::size_t count = 0;
 };
 
 /// Edge k of a triangle, turned into the other diagonal of the quadrilateral around it.
@@ -92,34 +98,75 @@ bool Refinement::in_vain(const PatchMesh& mesh, std::uint32_t member, const Flip
     const Vec2 middle{0.5 * p.x + 0.5 * q.x, 0.5 * p.y + 0.5 * q.y};
     const PolynomialCell& near = f.left.cell->polynomial();
     const Point d = (near.exact() ? near.point(middle) : surface_[member].patch.point(middle.x, middle.y)) - 0.5 * (positions_[mesh.vertex[f.from]] + positions_[mesh.vertex[f.to]]);
-    return (measure_ == Measure::parametric ? length(d) : std::fabs(dot(d, mesh.triangles[f.i].proof.unit))) > tolerance_;
+    return (measure_ == Measure::parametric ? length(d) : std::fabs(dot(d, mesh.triangles[f.i].proof.normal_of_plane()))) > tolerance_;
 }
 
-/// The worst edge first. Where polynomials serve, all that can be turned are bounded together.
-bool Refinement::flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t i, bool with_neighbours) const {
+/// The worst edge first.
+Refinement::Flips Refinement::flips_of(const PatchMesh& mesh, std::uint32_t member, std::uint32_t i) const {
     const int worst = mesh.triangles[i].proof.worst_edge;
-    std::array<Flip, 3> flips;
-    std::array<PatchTriangle*, 6> together;
-    std::size_t n = 0, count = 0;
+    Flips found;
     for (int k = 0; k < 3; ++k) {
         Flip f = flip_of(mesh, i, (worst + k) % 3);
         if (f.i == kNone) continue;
         f.together = sharp_cell(mesh, member, f.left) && sharp_cell(mesh, member, f.right);
-        if (!(f.together && in_vain(mesh, member, f))) flips[n++] = f;
+        if (!(f.together && in_vain(mesh, member, f))) found.list[found.count++] = f;
     }
-    for (std::size_t k = 0; k < n; ++k)
-        if (flips[k].together) together[count++] = &flips[k].left, together[count++] = &flips[k].right;
+    return found;
+}
+
+/// Where polynomials serve, all that can be turned are bounded together.
+void Refinement::bound_flips(const PatchMesh& mesh, std::uint32_t member, std::span<Flips> all) const {
+    std::array<PatchTriangle*, 6 * kFlipsTogether> together;
+    std::size_t count = 0;
+    for (Flips& flips : all)
+        for (std::size_t k = 0; k < flips.count; ++k)
+            if (flips.list[k].together) together[count++] = &flips.list[k].left, together[count++] = &flips.list[k].right;
     bound_together(mesh, member, {together.data(), count}, true);
-    for (std::size_t k = 0; k < n; ++k) {
-        Flip& f = flips[k];
+}
+
+/// The first that helps. Returns it, or nullptr.
+const Refinement::Flip* Refinement::flip_first(PatchMesh& mesh, std::uint32_t member, Flips& flips, bool with_neighbours) const {
+    for (std::size_t k = 0; k < flips.count; ++k) {
+        Flip& f = flips.list[k];
         if (!f.together) {
             bound(mesh, member, f.left, true);
             if (!keeps(mesh, f.left)) continue;
             bound(mesh, member, f.right, true);
         }
-        if (keeps(mesh, f.left) && keeps(mesh, f.right) && flip(mesh, f, with_neighbours)) return true;
+        if (keeps(mesh, f.left) && keeps(mesh, f.right) && flip(mesh, f, with_neighbours)) return &f;
     }
-    return false;
+    return nullptr;
+}
+
+bool Refinement::flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t i, bool with_neighbours) const {
+    Flips flips = flips_of(mesh, member, i);
+    bound_flips(mesh, member, {&flips, 1});
+    return flip_first(mesh, member, flips, with_neighbours) != nullptr;
+}
+
+/// One fresh triangle after the other, some of them bounded ahead: what another flip has touched since is looked at anew, so that the outcome is the same.
+void Refinement::flip_fresh(PatchMesh& mesh, std::uint32_t member) const {
+    std::array<Flips, kFlipsTogether> ahead;
+    std::array<std::uint32_t, kFlipsTogether> of;
+    std::array<std::uint32_t, 2 * kFlipsTogether> touched;
+    const auto fails = [&](std::uint32_t i) { return !(mesh.triangles[i].proof.own(measure_) + mesh.slack_of(mesh.triangles[i]) <= tolerance_); };
+    for (std::size_t next = 0; next < mesh.fresh.size();) {
+        std::size_t n = 0, changed = 0;
+        for (; next < mesh.fresh.size() && n < kFlipsTogether; ++next)
+            if (const auto i = mesh.fresh[next]; fails(i)) of[n] = i, ahead[n++] = flips_of(mesh, member, i);
+        bound_flips(mesh, member, {ahead.data(), n});
+        const auto is_touched = [&](std::uint32_t i) { return std::find(touched.begin(), touched.begin() + changed, i) != touched.begin() + changed; };
+        for (std::size_t k = 0; k < n; ++k) {
+            if (!fails(of[k])) continue;  // a flip before has mended it
+            bool stale = is_touched(of[k]);
+            for (const auto e : mesh.triangles[of[k]].edge) stale = stale || is_touched(mesh.edges[e].side[0]) || is_touched(mesh.edges[e].side[1]);
+            if (stale) {
+                ahead[k] = flips_of(mesh, member, of[k]);
+                bound_flips(mesh, member, {&ahead[k], 1});
+            }
+            if (const Flip* f = flip_first(mesh, member, ahead[k], false)) touched[changed++] = f->i, touched[changed++] = f->j;
+        }
+    }
 }
 
 }  // namespace isoparm

@@ -188,7 +188,7 @@ void Refinement::number_vertices(const std::vector<std::size_t>& first_corner, c
         split_triangles(std::uint32_t(m), first_edge[m]);
         patches_[m].marked.clear();
     });
-    collect_slack(first_corner);
+    collect_slack();
 }
 
 void Refinement::place_vertices(std::uint32_t member, std::size_t first_corner, std::uint32_t first_vertex) {

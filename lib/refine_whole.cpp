@@ -1,5 +1,7 @@
 // refine_whole.cpp -- what a Refinement looks at in the end, so that the mesh is the whole surface and a manifold: edges that several pairs of
 // triangles have, and edges that none has.
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <unordered_set>
 
@@ -19,29 +21,33 @@ std::uint64_t mesh_edge(const PatchMesh& mesh, const PatchEdge& e) {
 bool Refinement::mark_coincident_edges() {
     // In the plane of parameters two corners are joined by one edge at most. So are two mesh vertices, unless one of them
     // is several corners, which only vertices on rims can be.
-    std::vector<std::uint64_t> sides;  // each edge once for every triangle beside it
-    const auto each = [&](auto f) {
-        for (auto& mesh : patches_)
-            for (std::uint32_t i = 0; i < mesh.edges.size(); ++i) {
-                const PatchEdge& e = mesh.edges[i];
-                if (e.child != kNone || !(shared_[mesh.vertex[e.a]] || shared_[mesh.vertex[e.b]])) continue;
-                int beside = 0;
-                for (const auto t : e.side) beside += t != kNone && !mesh.left_out(mesh.triangles[t]);
-                if (beside > 0) f(mesh, i, mesh_edge(mesh, e), beside);
-            }
+    const auto each = [&](PatchMesh& mesh, auto f) {
+        for (std::uint32_t i = 0; i < mesh.edges.size(); ++i) {
+            const PatchEdge& e = mesh.edges[i];
+            if (e.child != kNone || !(shared_[mesh.vertex[e.a]] || shared_[mesh.vertex[e.b]])) continue;
+            int beside = 0;
+            for (const auto t : e.side) beside += t != kNone && !mesh.left_out(mesh.triangles[t]);
+            if (beside > 0) f(i, mesh_edge(mesh, e), beside);
+        }
     };
-    each([&](PatchMesh&, std::uint32_t, std::uint64_t key, int beside) { sides.insert(sides.end(), std::size_t(beside), key); });
+    std::vector<std::vector<std::uint64_t>> of(patches_.size());  // each edge once for every triangle beside it
+    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
+        each(patches_[m], [&](std::uint32_t, std::uint64_t key, int beside) { of[m].insert(of[m].end(), std::size_t(beside), key); });
+    });
+    std::vector<std::uint64_t> sides;
+    for (const auto& keys : of) sides.insert(sides.end(), keys.begin(), keys.end());
     std::sort(sides.begin(), sides.end());
     std::vector<std::uint64_t> crowded;
     for (std::size_t i = 2; i < sides.size(); ++i)
         if (sides[i] == sides[i - 2] && (crowded.empty() || crowded.back() != sides[i])) crowded.push_back(sides[i]);
     if (crowded.empty()) return false;
     bool any = false;
-    each([&](PatchMesh& mesh, std::uint32_t edge, std::uint64_t key, int) {
-        if (!std::binary_search(crowded.begin(), crowded.end(), key)) return;
-        mark(mesh, edge);
-        any = true;
-    });
+    for (auto& mesh : patches_)
+        each(mesh, [&](std::uint32_t edge, std::uint64_t key, int) {
+            if (!std::binary_search(crowded.begin(), crowded.end(), key)) return;
+            mark(mesh, edge);
+            any = true;
+        });
     return any;
 }
 
@@ -66,7 +72,9 @@ bool Refinement::may_lose(const PatchMesh& mesh) const {
 }
 
 bool Refinement::mark_lost_edges() {
-    if (std::none_of(patches_.begin(), patches_.end(), [&](const PatchMesh& mesh) { return may_lose(mesh); })) return false;
+    std::vector<char> lost(patches_.size());
+    tbb::parallel_for(std::size_t(0), lost.size(), [&](std::size_t m) { lost[m] = may_lose(patches_[m]); });
+    if (std::find(lost.begin(), lost.end(), char(true)) == lost.end()) return false;
     // A segment that is left out joins two vertices that it shares with other triangles, or is the whole of a patch.
     std::unordered_set<std::uint64_t> kept;
     std::vector<char> named(positions_.size(), 0);

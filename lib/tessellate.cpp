@@ -187,7 +187,7 @@ void report_normals(const Refinement& refinement, double limit, Tessellation& re
         for (const PatchTriangle& t : p.triangles) {
             if (p.left_out(t)) continue;
             if (!refinement.turns_little(p, t)) throw std::logic_error("a triangle turns by " + to_text(degrees_up(t.proof.turn)) + " degrees: please report this scene");
-            if (std::isfinite(t.proof.turn) && t.proof.turn <= limit) most = std::max(most, t.proof.turn);
+            if (std::isfinite(t.proof.turn) && t.proof.turn <= limit) most = std::max<double>(most, t.proof.turn);
             else ++result.normals_unproved;
         }
     result.normal_deviation = degrees_up(most);

@@ -1,5 +1,7 @@
 #include "topology.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,6 +16,18 @@ constexpr int kSamples = 32;  // intervals an edge is sampled in before a search
 Point edge_position(const Patch& patch, int edge, double t) {
     const Vec2 p = patch.edge_point(edge, t);
     return patch.point(p.x, p.y);
+}
+
+/// At kSamples + 1 parameters from low to high.
+std::vector<Point> edge_positions(const Patch& patch, int edge, double low, double high) {
+    std::array<double, kSamples + 1> u, v;
+    for (int i = 0; i <= kSamples; ++i) {
+        const Vec2 p = patch.edge_point(edge, i == kSamples ? high : low + (high - low) * i / kSamples);
+        u[std::size_t(i)] = p.x, v[std::size_t(i)] = p.y;
+    }
+    std::vector<Point> x(u.size());
+    patch.points(u.size(), u.data(), v.data(), x.data());
+    return x;
 }
 
 /// Points closer than the tolerance become one node; the earliest keeps its position.
@@ -68,7 +82,7 @@ struct EdgeShape {
 
 EdgeShape sample_edge(const Patch& patch, int edge, double tolerance) {
     EdgeShape s;
-    for (int i = 0; i <= kSamples; ++i) s.samples.push_back(edge_position(patch, edge, double(i) / kSamples));
+    s.samples = edge_positions(patch, edge, 0, 1);
     s.low = s.high = s.samples[0];
     for (int i = 0; i < kSamples; ++i) s.step = std::max(s.step, distance(s.samples[i], s.samples[i + 1]));
     for (const auto& p : s.samples) {
@@ -192,11 +206,10 @@ std::vector<char> orient(const Composite& surface, const Topology& topology) {
 
 double nearest_on_edge(const Patch& patch, int edge, const Point& target, double low, double high) {
     const auto far = [&](double t) { return distance(edge_position(patch, edge, t), target); };
-    double best = low, least = far(low);
-    for (int i = 1; i <= kSamples; ++i) {
-        const double t = i == kSamples ? high : low + (high - low) * i / kSamples, d = far(t);
-        if (d < least) best = t, least = d;
-    }
+    const std::vector<Point> samples = edge_positions(patch, edge, low, high);
+    double best = low, least = distance(samples[0], target);
+    for (int i = 1; i <= kSamples; ++i)
+        if (const double d = distance(samples[std::size_t(i)], target); d < least) best = i == kSamples ? high : low + (high - low) * i / kSamples, least = d;
     // Gauss-Newton on the edge, by central differences of step h, kept inside the bracket of the best sample.
     const double step = (high - low) / kSamples, a = std::max(low, best - step), b = std::min(high, best + step);
     for (int i = 0; i < 40; ++i) {
@@ -216,10 +229,13 @@ Topology find_topology(const Composite& surface, double tolerance) {
     // Nodes: corners and breaks of every edge.
     NodeTable table(tolerance);
     std::vector<std::array<EdgeShape, 4>> shapes(surface.size());
+    tbb::parallel_for(std::size_t(0), surface.size(), [&](std::size_t m) {
+        for (int k = 0; k < surface[m].patch.edges(); ++k) shapes[m][k] = sample_edge(surface[m].patch, k, tolerance);
+    });
     for (std::size_t m = 0; m < surface.size(); ++m) {
         const Patch& patch = surface[m].patch;
         for (int k = 0; k < patch.edges(); ++k) {
-            EdgeShape& s = shapes[m][k] = sample_edge(patch, k, tolerance);
+            EdgeShape& s = shapes[m][k];
             std::vector<double> t{0};
             for (double b : patch.edge_breaks(k)) t.push_back(b);
             t.push_back(1);
@@ -232,7 +248,7 @@ Topology find_topology(const Composite& surface, double tolerance) {
     std::vector<std::uint32_t> by_x(table.points.size());
     for (std::uint32_t i = 0; i < by_x.size(); ++i) by_x[i] = i;
     std::sort(by_x.begin(), by_x.end(), [&](auto a, auto b) { return table.points[a].x < table.points[b].x; });
-    for (std::size_t m = 0; m < surface.size(); ++m)
+    tbb::parallel_for(std::size_t(0), surface.size(), [&](std::size_t m) {
         for (int k = 0; k < surface[m].patch.edges(); ++k) {
             EdgeShape& s = shapes[m][k];
             if (s.collapsed) continue;
@@ -249,6 +265,7 @@ Topology find_topology(const Composite& surface, double tolerance) {
             }
             std::sort(s.nodes.begin(), s.nodes.end(), [](const NodeOnEdge& a, const NodeOnEdge& b) { return a.t < b.t; });
         }
+    });
     // Rims: pieces with the same two nodes that coincide in between.
     Topology result;
     result.nodes = std::move(table.points);

@@ -14,11 +14,12 @@ struct TriangleLanes {
     static constexpr int size = 8;
     alignas(64) double u[3][size]{}, v[3][size]{}, x[3][3][size]{}, slack[size]{};
 
+    void set(std::size_t lane, std::size_t corner, const Vec2& uv, const Point& point) {
+        u[corner][lane] = uv.x, v[corner][lane] = uv.y;
+        x[corner][0][lane] = point.x, x[corner][1][lane] = point.y, x[corner][2][lane] = point.z;
+    }
     void set(int lane, const CornerData& triangle) {
-        for (int k = 0; k < 3; ++k) {
-            u[k][lane] = triangle.uv[k].x, v[k][lane] = triangle.uv[k].y;
-            x[k][0][lane] = triangle.points[k].x, x[k][1][lane] = triangle.points[k].y, x[k][2][lane] = triangle.points[k].z;
-        }
+        for (std::size_t k = 0; k < 3; ++k) set(std::size_t(lane), k, triangle.uv[k], triangle.points[k]);
         slack[lane] = triangle.slack;
     }
 };
