@@ -82,7 +82,23 @@ ModelSource::ModelSource(const Patch& patch, const Box& cell) {
     }
 }
 
-PolynomialCell ModelSource::over(const Patch&, const Box& box) const { return exact_.empty() ? PolynomialCell() : rational_over(box); }
+PolynomialCell ModelSource::over(const Patch& patch, const Box& box) const { return exact_.empty() ? formula_over(patch, box) : rational_over(box); }
+
+/// What the formula of the surface makes of its parameters as models.
+PolynomialCell ModelSource::formula_over(const Patch& patch, const Box& box) {
+    const std::vector<Polynomial> x = patch.model(box);
+    if (x.size() != 3) return {};
+    constexpr int stride = kDegree + 1;
+    std::vector<PolynomialCell::Lanes> c(std::size_t(stride * stride), PolynomialCell::Lanes{});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!x[axis].exists() || x[axis].degree_u() > kDegree || x[axis].degree_v() > kDegree) return {};
+        for (int i = 0; i <= x[axis].degree_u(); ++i)
+            for (int j = 0; j <= x[axis].degree_v(); ++j) c[std::size_t(i * stride + j)][axis] = mid(x[axis].coefficient(i, j));
+    }
+    const auto length_of = [&](double Polynomial::Rest::*of) { return rounding::length_up(x[0].rest().*of, x[1].rest().*of, x[2].rest().*of); };
+    return PolynomialCell(kDegree, kDegree, mid(box.u), mid(box.v), rad(box.u), rad(box.v), std::move(c),
+                          {length_of(&Polynomial::Rest::uu), length_of(&Polynomial::Rest::uv), length_of(&Polynomial::Rest::vv)});
+}
 
 /// S = N / W. The model P is S's Taylor polynomial about the middle, up to rounding; S - P is R / W with R = N - P W, whose coefficients are
 /// bounded: small ones, but for those of high order.

@@ -20,6 +20,7 @@ private:
     using Lanes = std::array<double, 4>;  // x, y, z, denominator
 
     PolynomialCell rational_over(const Box& box) const;
+    static PolynomialCell formula_over(const Patch& patch, const Box& box);
 
     int p_ = 0, q_ = 0;                           // degrees
     double u_ = 0, v_ = 0;                        // the cell's middle
