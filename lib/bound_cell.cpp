@@ -52,8 +52,14 @@ SecondDerivatives BoundCell::model_of(const Patch& patch, const Box& box, int pa
         const std::lock_guard lock(last_guard_);
         if (last && last->parts == parts && same(last->box.u, box.u) && same(last->box.v, box.v)) return last->model;
     }
-    const PolynomialCell own = source_->over(patch, box);
-    auto fresh = std::make_unique<const Last>(Last{box, parts, own.exists() && own.inaccuracy() <= kVague ? over(own) : SecondDerivatives(patch, box, parts)});
+    const auto own = [&] {
+        const PolynomialCell p = source_->over(patch, box);
+        return p.exists() && p.inaccuracy() <= kVague ? over(p) : SecondDerivatives();
+    };
+    // Intervals over the box are the fastest; over pieces of it they take longer than a model of any formula.
+    SecondDerivatives found = source_->first() || parts > 1 ? own() : SecondDerivatives(patch, box);
+    if (!found.bounded) found = source_->first() || parts > 1 ? SecondDerivatives(patch, box, parts) : own();
+    auto fresh = std::make_unique<const Last>(Last{box, parts, found});
     const SecondDerivatives model = fresh->model;
     const std::lock_guard lock(last_guard_);
     last = std::move(fresh);

@@ -28,8 +28,22 @@ struct Reparametrized {
 
 }  // namespace
 
-Vec3<Polynomial> Curve::Concept::exact(const Polynomial&) const {
-    return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
+/// Of a model: a cubic, and third derivatives that differ from its own by what intervals show. Points of a surface have parameters in the domain
+/// of its curves, wherever the box of the model reaches.
+Vec3<Polynomial> Curve::Concept::exact(const Polynomial& t) const {
+    const Vec3<Polynomial> none{Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
+    if (!t.exists() || !t.is_model()) return none;
+    const Interval range = clip(t.range(), {begin(), end()});
+    const double at = mid(range);
+    Vec3<Interval> f[4], over[4];
+    taylor(Interval(at), 3, f);
+    taylor(range, 3, over);
+    Vec3<Polynomial> x;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Interval c[4] = {f[0][axis], f[1][axis], f[2][axis], over[3][axis]};
+        x[axis] = Polynomial::composed(c, 3, t, at);
+    }
+    return x;
 }
 
 std::vector<Break> breaks_of(std::span<const Curve> curves) {

@@ -33,7 +33,8 @@ public:
         virtual void taylor(double t, int order, Vec3<double>* out) const = 0;
         virtual void taylor(const Pack& t, int order, Vec3<Pack>* out) const = 0;
         virtual void taylor(const Interval& t, int order, Vec3<Interval>* out) const = 0;
-        /// The exact polynomial, where the curve is one over the range of t (or everywhere on its domain: then t may leave it).
+        /// The exact polynomial, where the curve is one over the range of t (or everywhere on its domain: then t may leave it). Of a model, a
+        /// model where the curve is smooth over the range of t.
         virtual Vec3<Polynomial> exact(const Polynomial& t) const;
         /// Its exact (rational) Bezier pieces, where it has them.
         virtual const PiecewiseBezier* bezier() const { return nullptr; }

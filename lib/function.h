@@ -20,7 +20,8 @@ public:
         virtual void taylor(double t, int order, double* out) const = 0;
         virtual void taylor(const Pack& t, int order, Pack* out) const = 0;
         virtual void taylor(const Interval& t, int order, Interval* out) const = 0;
-        virtual Polynomial exact(const Polynomial&) const { return Polynomial::nothing(); }
+        /// The exact polynomial, where the function is one; of a model, a model.
+        virtual Polynomial exact(const Polynomial& t) const;
     };
     explicit Function(std::shared_ptr<const Concept> impl) : impl_(std::move(impl)) {}
     /// sum coefficients[k] t^k
@@ -62,7 +63,7 @@ public:
     void taylor(const Interval& t, int order, Interval* out) const override { run(t, order, out); }
     Polynomial exact(const Polynomial& t) const override {
         if constexpr (requires { { f_(t) } -> std::same_as<Polynomial>; }) return f_(t);
-        else return Polynomial::nothing();
+        else return Concept::exact(t);
     }
 
 private:

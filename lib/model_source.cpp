@@ -13,6 +13,8 @@ using Homogeneous = std::array<Interval, 4>;
 constexpr int kDegree = PolynomialCell::max_degree;
 /// Of numerators and denominators: more take long.
 constexpr int kMostDegree = 9;
+/// Boxes that tell whether a formula has models have this part of the cell's width. Models of a triangle's own box come before intervals where those are so many times vaguer.
+constexpr double kProbe = 1.0 / 16, kFarSharper = 8;
 
 /// At least the absolute values of a polynomial and its derivatives over |x| <= hu, |y| <= hv.
 struct Sizes {
@@ -58,6 +60,33 @@ std::size_t index_of(const std::vector<double>& lines, const Interval& x) {
 }  // namespace
 
 ModelSource::ModelSource(const Patch& patch, const Box& cell) {
+    take_quotient(patch, cell);
+    if (exact_.empty()) try_formula(patch, cell);
+}
+
+/// A formula without models costs time wherever one is tried, and where intervals are nearly as sharp they are faster: three small boxes tell.
+void ModelSource::try_formula(const Patch& patch, const Box& cell) {
+    int sharper = 0;
+    for (const auto [x, y] : {std::pair{0.25, 0.25}, {0.5, 0.25}, {0.25, 0.5}}) {
+        const auto part = [](const Interval& t, double at) { return Interval(t.lo + at * (t.hi - t.lo), t.lo + (at + kProbe) * (t.hi - t.lo)); };
+        const Box box{part(cell.u, x), part(cell.v, y)};
+        const PolynomialCell model = formula_over(patch, box);
+        if (!model.exists()) continue;
+        formula_ = true;
+        const SecondDerivatives by_model = model(box), by_intervals(patch, box);
+        const auto vague = [](const SecondDerivatives& s, const Box& b) {
+            const double h[2] = {rad(b.u), rad(b.v)};
+            double sum = 0;
+            for (std::size_t k = 0; k < 4; ++k) sum += s.t_rad[k] * std::pow(h[0], double(3 - k)) * std::pow(h[1], double(k));
+            for (std::size_t k = 0; k < 3; ++k) sum += s.h_rad[k] * std::pow(h[0], double(2 - k)) * std::pow(h[1], double(k));
+            return s.bounded ? sum : std::numeric_limits<double>::infinity();
+        };
+        sharper += vague(by_intervals, box) > kFarSharper * vague(by_model, box);
+    }
+    sharper_ = sharper > 1;
+}
+
+void ModelSource::take_quotient(const Patch& patch, const Box& cell) {
     const std::vector<double> us = patch.lines_u(), vs = patch.lines_v();
     const std::size_t column = index_of(us, cell.u), row = index_of(vs, cell.v);
     if (column == SIZE_MAX || row == SIZE_MAX) return;
@@ -82,7 +111,23 @@ ModelSource::ModelSource(const Patch& patch, const Box& cell) {
     }
 }
 
-PolynomialCell ModelSource::over(const Patch&, const Box& box) const { return exact_.empty() ? PolynomialCell() : rational_over(box); }
+PolynomialCell ModelSource::over(const Patch& patch, const Box& box) const { return !exact_.empty() ? rational_over(box) : formula_ ? formula_over(patch, box) : PolynomialCell(); }
+
+/// What the formula of the surface makes of its parameters as models.
+PolynomialCell ModelSource::formula_over(const Patch& patch, const Box& box) {
+    const std::vector<Polynomial> x = patch.model(box);
+    if (x.size() != 3) return {};
+    constexpr int stride = kDegree + 1;
+    std::vector<PolynomialCell::Lanes> c(std::size_t(stride * stride), PolynomialCell::Lanes{});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!x[axis].exists() || x[axis].degree_u() > kDegree || x[axis].degree_v() > kDegree) return {};
+        for (int i = 0; i <= x[axis].degree_u(); ++i)
+            for (int j = 0; j <= x[axis].degree_v(); ++j) c[std::size_t(i * stride + j)][axis] = mid(x[axis].coefficient(i, j));
+    }
+    const auto length_of = [&](double Polynomial::Rest::*of) { return rounding::length_up(x[0].rest().*of, x[1].rest().*of, x[2].rest().*of); };
+    return PolynomialCell(kDegree, kDegree, mid(box.u), mid(box.v), rad(box.u), rad(box.v), std::move(c),
+                          {length_of(&Polynomial::Rest::uu), length_of(&Polynomial::Rest::uv), length_of(&Polynomial::Rest::vv)});
+}
 
 /// S = N / W. The model P is S's Taylor polynomial about the middle, up to rounding; S - P is R / W with R = N - P W, whose coefficients are
 /// bounded: small ones, but for those of high order.

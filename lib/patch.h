@@ -64,6 +64,8 @@ public:
         virtual const PolynomialCells* batch() const { return nullptr; }
         /// As Patch::exact_cell().
         virtual std::vector<Polynomial> exact_cell(std::size_t, std::size_t) const { return {}; }
+        /// As Patch::model().
+        virtual std::vector<Polynomial> model(const Box&) const { return {}; }
         /// The unit normal at a point where S_u or S_v does not exist, if the surface has one there all the same.
         virtual std::optional<Point> singular_normal(double, double) const { return {}; }
     };
@@ -95,6 +97,9 @@ public:
     /// The surface between lines_u()[i], lines_u()[i+1] and lines_v()[j], lines_v()[j+1], these included: polynomials x, y, z, or x, y, z
     /// and their common denominator, in (u,v) minus the middle of the cell. Empty where it is neither polynomial nor known as rational.
     std::vector<Polynomial> exact_cell(std::size_t i, std::size_t j) const { return impl_->exact_cell(i, j); }
+    /// Models (Polynomial::is_model) of x, y, z over a box in one cell, about its middle: valid at all points of the box in the domain. Empty where there
+    /// are none: the formula is singular, has a kink or changes too much.
+    std::vector<Polynomial> model(const Box& box) const { return impl_->model(box); }
     std::optional<Point> singular_normal(double u, double v) const { return impl_->singular_normal(u, v); }
     /// Encloses the exact position at (u,v).
     Vec3<Interval> enclose_point(double u, double v) const;

@@ -105,6 +105,16 @@ public:
         if (!std::all_of(form.begin(), form.end(), [](const Polynomial& x) { return x.exists(); })) form.clear();
         return form;
     }
+    std::vector<Polynomial> model(const Box& box) const override {
+        const std::size_t i = cell(breaks_u_, box.u.lo), j = cell(breaks_v_, box.v.lo);
+        if (i != last_cell(edges_u_, i, box.u.hi) || j != last_cell(edges_v_, j, box.v.hi)) return {};
+        const auto x = Polynomial::model_u(box.u), y = Polynomial::model_v(box.v);
+        Vec3<Polynomial> p;
+        if constexpr (F::domain == Domain::quad) p = f_(x, y);
+        else p = f_(x, y, Polynomial(1) - x - y);
+        if (!p.x.exists() || !p.y.exists() || !p.z.exists()) return {};
+        return {p.x, p.y, p.z};
+    }
     Vec3<Interval> enclose_points(const Box& box) const override {
         const std::size_t i0 = cell(breaks_u_, box.u.lo), i1 = last_cell(edges_u_, i0, box.u.hi);
         const std::size_t j0 = cell(breaks_v_, box.v.lo), j1 = last_cell(edges_v_, j0, box.v.hi);

@@ -129,6 +129,22 @@ template <> void piece_taylor(const BezierPiece& piece, const Interval& t, int o
     }
 }
 
+/// Of a rational piece: numerators over the denominator, each by de Casteljau's scheme.
+Vec3<Polynomial> quotient_model(const BezierPiece& piece, const Polynomial& t) {
+    const Polynomial s = (t - Polynomial(piece.begin)) / Polynomial(Interval(piece.end) - Interval(piece.begin)), r = Polynomial(1) - s;
+    const auto form = [&](auto coefficient) {
+        std::vector<Polynomial> b;
+        for (std::size_t i = 0; i < piece.points.size(); ++i) b.push_back(Polynomial(coefficient(i)));
+        for (; b.size() > 1; b.pop_back())
+            for (std::size_t i = 0; i + 1 < b.size(); ++i) b[i] = r * b[i] + s * b[i + 1];
+        return b[0];
+    };
+    const Polynomial w = form([&](std::size_t i) { return Interval(piece.weights[i]); });
+    Vec3<Polynomial> x;
+    for (int axis = 0; axis < 3; ++axis) x[axis] = form([&](std::size_t i) { return Interval(piece.weights[i]) * Interval(piece.points[i][axis]); }) / w;
+    return x;
+}
+
 }  // namespace
 
 PiecewiseBezier::PiecewiseBezier(std::vector<BezierPiece> pieces, std::vector<int> continuity)
@@ -205,10 +221,11 @@ Vec3<Polynomial> PiecewiseBezier::exact(const Polynomial& t) const {
     if (!t.exists()) return none;
     const Interval range = t.range();
     const auto& piece = pieces_[piece_at(mid(range))];
-    const double slack = 1e-9 * (piece.end - piece.begin);
+    const double slack = t.is_model() ? break_rounding * (end() - begin()) : 1e-9 * (piece.end - piece.begin);
     // A lone piece is the same polynomial everywhere: on a triangle w = 1-u-v is one of a square, where it leaves [0,1].
     const bool inside = range.lo >= piece.begin - slack && range.hi <= piece.end + slack;
-    if (!piece.weights.empty() || !(inside || pieces_.size() == 1)) return none;
+    if (!(inside || pieces_.size() == 1)) return none;
+    if (!piece.weights.empty()) return t.is_model() ? quotient_model(piece, t) : none;
     const double m = std::clamp(mid(range), piece.begin, piece.end);
     std::array<Vec3<Interval>, max_degree + 1> a;
     piece_taylor(piece, Interval(m), piece.degree(), a.data());

@@ -70,12 +70,6 @@ Coefficients operator-(const Coefficients& a, const Coefficients& b) { return a 
 Coefficients operator/(const Coefficients&, const Coefficients&) { return {}; }
 Coefficients square(const Coefficients& a) { return a * a; }
 
-template <class S> constexpr bool only_polynomials = std::is_same_v<S, Polynomial> || std::is_same_v<S, Coefficients>;
-template <class S> S not_polynomial() {
-    if constexpr (std::is_same_v<S, Polynomial>) return Polynomial::nothing();
-    else return S();
-}
-
 // Runs the nodes below one node on a scalar.
 template <class S> struct Run {
     const std::vector<Expression::Node>& nodes;
@@ -99,12 +93,12 @@ template <class S> struct Run {
             case Op::divide: return quotient(n);
             case Op::negate: return -at(n.a);
             case Op::power_integer:
-                if (only_polynomials<S> && n.value < 0) return not_polynomial<S>();
+                if (std::is_same_v<S, Coefficients> && n.value < 0) return S();
                 return power(at(n.a), static_cast<int>(n.value));
             default: break;
         }
-        if constexpr (only_polynomials<S>) {
-            return not_polynomial<S>();
+        if constexpr (std::is_same_v<S, Coefficients>) {
+            return S();
         } else {
             using std::cos, std::exp, std::log, std::pow, std::sin, std::sqrt;
             switch (n.op) {

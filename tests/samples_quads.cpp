@@ -65,7 +65,6 @@ PatchSample coons_over(const Frame& e, const std::optional<Function>& blend = {}
 /// sin(pi t / 2)^2: a blend that is no polynomial
 struct SineBlend {
     template <class S> S operator()(const S& t) const { return 0.5 * (1.0 - cos(t * std::numbers::pi)); }
-    Polynomial operator()(const Polynomial&) const { return Polynomial::nothing(); }
 };
 
 /// Boundary, cross derivatives and their Bezier points; from a Bezier patch they are compatible.
@@ -108,7 +107,6 @@ HermiteData twisted_data(Random& r) {
 /// 1 minus it
 struct OtherBlend {
     template <class S> S operator()(const S& t) const { return 0.5 * (1.0 + cos(t * std::numbers::pi)); }
-    Polynomial operator()(const Polynomial&) const { return Polynomial::nothing(); }
 };
 /// Hermite functionals along u, values with a blend that is no polynomial along v.
 PatchSample generalized(Random& r) {

@@ -40,8 +40,9 @@ struct BezierTriangle {
         return n.size() == 3 ? p : p / n[3](u, v, w);
     }
     Vec3<Polynomial> operator()(const Polynomial& u, const Polynomial& v, const Polynomial& w) const {
-        if (n.size() == 4) return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
-        return {n[0](u, v, w), n[1](u, v, w), n[2](u, v, w)};
+        if (n.size() == 4 && !u.is_model()) return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
+        const Vec3<Polynomial> p{n[0](u, v, w), n[1](u, v, w), n[2](u, v, w)};
+        return n.size() == 3 ? p : p / n[3](u, v, w);
     }
     std::vector<Polynomial> homogeneous(const Polynomial& u, const Polynomial& v, const Polynomial& w) const {
         std::vector<Polynomial> x;

@@ -28,6 +28,7 @@ public:
     void frame_arrays(Isa isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const override { patch_.frames(u, v, out, isa); }
     Enclosure enclose(const Box& box) const override { return patch_.enclose(box); }
     Vec3<Interval> enclose_points(const Box& box) const override { return patch_.enclose_points(box); }
+    std::vector<Polynomial> model(const Box& box) const override { return patch_.model(box); }
     const PolynomialCells* batch() const override { return patch_.batch(); }
     std::optional<Point> singular_normal(double u, double v) const override { return patch_.singular_normal(u, v); }
 

@@ -172,8 +172,11 @@ template <class Ray> struct Nielson {
         }
         return x;
     }
-    template <class R> R combined(const Polynomial&, const Polynomial&, const Polynomial&) const {
-        return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
+    template <class R> R combined(const Polynomial& u, const Polynomial& v, const Polynomial& w) const {
+        const Polynomial p = square(v * w), q = square(w * u), sum = p + q + square(u * v), of_u = p / sum, of_v = q / sum;
+        if (!of_u.exists() || !of_v.exists()) return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
+        const R t[3] = {turned(0, ray, u, v, w), turned(1, ray, u, v, w), turned(2, ray, u, v, w)};
+        return t[2] + of_u * (t[0] - t[2]) + of_v * (t[1] - t[2]);
     }
     template <class R, class T, int I1, int J1, int I2, int J2, int N>
     R combined(const Jet<T, I1, J1, N>& u, const Jet<T, I2, J2, N>& v, const JetUV<T, N>& w) const {

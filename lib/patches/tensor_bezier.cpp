@@ -117,9 +117,10 @@ private:
         return cell.n.size() == 3 ? p : p / n[3];
     }
     static Vec3<Polynomial> evaluate(const Cell& cell, const Polynomial& s, const Polynomial& t) {
-        if (cell.n.size() == 4) return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
+        if (cell.n.size() == 4 && !s.is_model()) return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
         const auto x = coordinates(cell, s, t);
-        return {x[0], x[1], x[2]};
+        const Vec3<Polynomial> p{x[0], x[1], x[2]};
+        return cell.n.size() == 3 ? p : p / x[3];
     }
 };
 

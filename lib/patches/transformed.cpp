@@ -63,6 +63,15 @@ public:
         }
         return y;
     }
+    std::vector<Polynomial> model(const Box& box) const override {
+        const auto x = patch_.model(box);
+        auto y = x;
+        for (std::size_t axis = 0; axis < x.size(); ++axis) {
+            y[axis] = Polynomial(map_.m[axis][3]);
+            for (std::size_t k = 0; k < 3; ++k) y[axis] = y[axis] + x[k] * Polynomial(map_.m[axis][k]);
+        }
+        return y;
+    }
     std::optional<Point> singular_normal(double u, double v) const override {
         const auto n = patch_.singular_normal(u, v);
         if (!n) return {};

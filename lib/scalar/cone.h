@@ -180,9 +180,12 @@ struct GregoryRatio {
     template <class S> S operator()(const S& tau) const { return square(tau) * (1.0 - tau); }
 };
 
-/// Not a polynomial in general.
-template <class HF, class G> auto cone(const HF&, const G& g, const Polynomial&, const Polynomial&) {
-    return decltype(g(Polynomial()))(g(Polynomial::nothing()));
+/// Not a polynomial in general; a model away from r = 0.
+template <class HF, class G> auto cone(const HF& H, const G& g, const Polynomial& a, const Polynomial& b) {
+    using Value = decltype(g(Polynomial()));
+    const Polynomial r = a + b;
+    if (!r.is_model()) return Value(g(Polynomial::nothing()));
+    return Value(H(r) * g(a / r));
 }
 
 }  // namespace isoparm

@@ -207,26 +207,30 @@ Jet<Interval, I, J, N> choose(Truth c, const Jet<Interval, I, J, N>& a, const Je
 /// a where x compares so with y, else b. `continuous`: the branches agree where the choice switches.
 template <class S> S choose(Comparison how, const S& x, const S& y, const S& a, const S& b, bool continuous) {
     if constexpr (std::is_same_v<S, Polynomial>) {
-        return Polynomial::nothing();
+        // A model lies to one side or has no second derivatives that could be bounded.
+        if (!x.exists() || !y.exists() || !(x.is_model() || y.is_model())) return Polynomial::nothing();
+        const Truth c = decide(how, x.range(), y.range(), continuous);
+        return c == Truth::unknown ? Polynomial::nothing() : c == Truth::yes ? a : b;
     } else {
         const auto c = continuous ? decide_after(how, x, y) : decide(how, base(x), base(y), false);
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(c)>, Truth>) return choose(c, a, b, continuous);
         else return choose(c, a, b);
     }
 }
+template <class S> constexpr bool keeps_enclosures = requires(const S& x) { base(x).lo; };
 template <class S> S absolute(const S& x) {
     S r = choose(Comparison::less, x, S(0.0), S(-x), x, true);
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(base(x))>, Interval>) r.c[0] = abs(x.c[0]);
+    if constexpr (keeps_enclosures<S>) r.c[0] = abs(x.c[0]);
     return r;
 }
 template <class S> S smaller(const S& a, const S& b) {
     S r = choose(Comparison::less, b, a, b, a, true);
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(base(a))>, Interval>) r.c[0] = min(a.c[0], b.c[0]);
+    if constexpr (keeps_enclosures<S>) r.c[0] = min(a.c[0], b.c[0]);
     return r;
 }
 template <class S> S larger(const S& a, const S& b) {
     S r = choose(Comparison::less, a, b, b, a, true);
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(base(a))>, Interval>) r.c[0] = max(a.c[0], b.c[0]);
+    if constexpr (keeps_enclosures<S>) r.c[0] = max(a.c[0], b.c[0]);
     return r;
 }
 

@@ -43,6 +43,11 @@ void polynomial_taylor(const double* c, int degree, const Interval& t, int order
     shift_taylor(a.data(), degree, t - Interval(m), order, out);
 }
 
+// polynomial_model.cpp
+Polynomial model_sum(const Polynomial& a, const Polynomial& b);
+Polynomial model_product(const Polynomial& a, const Polynomial& b);
+Polynomial model_quotient(const Polynomial& a, const Polynomial& b);
+
 Polynomial Polynomial::nothing() {
     Polynomial p;
     p.c_.clear();
@@ -76,11 +81,12 @@ Interval Polynomial::range() const {
         sum = sum + row * px;
         px = px * x_;
     }
-    return sum;
+    return model_ ? sum + Interval(-rest_.f, rest_.f) : sum;
 }
 
 Polynomial operator+(const Polynomial& a, const Polynomial& b) {
     if (!a.exists() || !b.exists()) return Polynomial::nothing();
+    if (a.model_ || b.model_) return model_sum(a, b);
     Polynomial r(std::max(a.p_, b.p_), std::max(a.q_, b.q_));
     r.x_ = hull(a.x_, b.x_);
     r.y_ = hull(a.y_, b.y_);
@@ -99,6 +105,7 @@ Polynomial operator-(const Polynomial& a) {
 
 Polynomial operator*(const Polynomial& a, const Polynomial& b) {
     if (!a.exists() || !b.exists() || a.p_ + b.p_ > 64 || a.q_ + b.q_ > 64) return Polynomial::nothing();
+    if (a.model_ || b.model_) return model_product(a, b);
     Polynomial r(a.p_ + b.p_, a.q_ + b.q_);
     r.x_ = hull(a.x_, b.x_);
     r.y_ = hull(a.y_, b.y_);
@@ -111,7 +118,10 @@ Polynomial operator*(const Polynomial& a, const Polynomial& b) {
 }
 
 Polynomial operator/(const Polynomial& a, const Polynomial& b) {
-    if (!b.exists() || b.p_ != 0 || b.q_ != 0) return Polynomial::nothing();
+    if (!b.exists()) return Polynomial::nothing();
+    if (b.model_) return a.exists() ? model_quotient(a, b) : Polynomial::nothing();
+    if (b.p_ != 0 || b.q_ != 0) return Polynomial::nothing();
+    if (a.model_) return a * Polynomial(Interval(1) / b.c_[0]);
     Polynomial r = a;
     for (auto& c : r.c_) c = c / b.c_[0];
     return r;

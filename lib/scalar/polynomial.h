@@ -3,6 +3,9 @@
 // A polynomial of degree n is its own Taylor expansion of order n. So a formula that runs on Polynomial instead of a jet
 // yields, when all its parts are polynomial, the surface itself: exact up to the outward rounding of the coefficients.
 // What is not polynomial (a quotient, a rational curve) makes the result `!exists()`, and callers use interval jets.
+//
+// A formula that runs on model_u() and model_v() yields a model of the surface instead: a polynomial of degree <= 5 in each parameter and a
+// bound of what is left out (Rest), whatever smooth functions it is made of. scalar/polynomial_model.cpp; docs/certificates.md, "Models", has the proofs.
 #pragma once
 #include <vector>
 
@@ -47,11 +50,23 @@ inline double polynomial(const double* c, int degree, double t) {
 /// Polynomial in (x,y) = (u,v) - centre with interval coefficients, over the box |x| <= hx, |y| <= hy.
 class Polynomial {
 public:
+    /// At least the absolute values of a function of (u,v) and of its derivatives over the box.
+    struct Rest {
+        double f = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0;
+    };
     Polynomial(double value = 0) : p_(0), q_(0), c_{Interval(value)} {}  // NOLINT: numbers are polynomials
     Polynomial(const Interval& value) : p_(0), q_(0), c_{value} {}       // NOLINT
     static Polynomial variable_u(const Interval& u);
     static Polynomial variable_v(const Interval& v);
     static Polynomial nothing();
+    /// The variables as models: what is made of one is a model too. Half the width of the box is from 1e-20 to 1e6.
+    static Polynomial model_u(const Interval& u);
+    static Polynomial model_v(const Interval& v);
+    bool is_model() const { return model_; }
+    /// Of what differs from the polynomial by this, the function itself: all 0 but for models.
+    const Rest& rest() const { return rest_; }
+    /// f(x) for a model x inside f's domain, f smooth on an interval that holds x's range and `at`: Taylor coefficients f[0..n-1] at `at`, f[n] over all of the interval.
+    static Polynomial composed(const Interval* f, int n, const Polynomial& x, double at);
 
     bool exists() const { return !c_.empty(); }
     int degree_u() const { return p_; }
@@ -64,6 +79,7 @@ public:
     friend Polynomial operator+(const Polynomial& a, const Polynomial& b);
     friend Polynomial operator-(const Polynomial& a);
     friend Polynomial operator*(const Polynomial& a, const Polynomial& b);
+    /// Of models, where the denominator has no zero; of exact polynomials by numbers only.
     friend Polynomial operator/(const Polynomial& a, const Polynomial& b);
 
     /// Taylor coefficients of order N over the box (u,v); exact ranges up to rounding of the centred form.
@@ -71,13 +87,24 @@ public:
                                JetUV<Interval, 2>* at_centre, JetUV<Interval, N>* over) const;
 
 private:
+    friend struct ModelArithmetic;
     Polynomial(int p, int q) : p_(p), q_(q), c_(static_cast<std::size_t>((p + 1) * (q + 1))) {}
     Interval at(const Interval& dx, const Interval& dy) const;
     void recentre(const Interval& dx, const Interval& dy, std::vector<Interval>& out) const;
     int p_, q_;
     std::vector<Interval> c_;
     Interval x_{0}, y_{0};  // the box, around 0
+    bool model_ = false;    // coefficients are numbers
+    Rest rest_;
 };
+
+/// Of models that stay in the domain of these functions, and of numbers; nothing() otherwise.
+Polynomial sin(const Polynomial& x);
+Polynomial cos(const Polynomial& x);
+Polynomial exp(const Polynomial& x);
+Polynomial log(const Polynomial& x);
+Polynomial sqrt(const Polynomial& x);
+Polynomial pow(const Polynomial& x, double p);
 
 inline Polynomial operator-(const Polynomial& a, const Polynomial& b) { return a + (-b); }
 inline Polynomial square(const Polynomial& a) { return a * a; }
