@@ -46,6 +46,13 @@ void find_cuts(const Patch& patch, int k, int level, double at, EdgeCuts& cuts) 
     find_cuts(patch, k, level + 1, 2 * at + 1, cuts);
 }
 
+/// The edge that both points lie on; -1: none.
+int edge_of_triangle(const Vec2& p, const Vec2& q) {
+    if (p.x == 0 && q.x == 0) return 0;
+    if (p.y == 0 && q.y == 0) return 1;
+    return p.x + p.y == 1 && q.x + q.y == 1 ? 2 : -1;
+}
+
 }  // namespace
 
 CellForm form_beside(const Patch& patch, const Vec2& from, const Vec2& to, const Vec2& side) {
@@ -58,6 +65,9 @@ CellForm form_beside(const Patch& patch, const Vec2& from, const Vec2& to, const
         const int edge = from.x == to.x && from.x == c.u0 ? 3 : from.x == to.x && from.x == c.u1 ? 1 : from.y == to.y && from.y == c.v0 ? 0 : from.y == to.y && from.y == c.v1 ? 2 : -1;
         found.form = edge < 0 ? std::vector<Polynomial>{} : patch.exact_cell(i + std::size_t(edge + 1) * (u.size() - 1), j);
     }
+    if (patch.domain() == Domain::triangle && !has_dyadic_parts(found.form) && found.form.size() != 3)
+        if (const int edge = edge_of_triangle(from, to); edge >= 0)
+            if (auto beside = patch.exact_cell(std::size_t(edge + 1), 0); has_triangle_form(beside)) found.form = std::move(beside);
     if (!has_dyadic_parts(found.form)) return found;
     // Most lines are a side of a part.
     const double size = std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y));

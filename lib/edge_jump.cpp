@@ -44,6 +44,12 @@ Interval angle_of(const Models& p, const Models& q) {
     return degrees_of(y, x);
 }
 
+/// The same of vectors whose sense does not count, 0 to 90.
+Interval angle_of_lines(const Models& p, const Models& q) {
+    const Interval angle = dot(p, q).range().hi < 0 ? angle_of(p, {-q.x, -q.y, -q.z}) : angle_of(p, q);
+    return angle.hi <= 90 ? angle : Interval(std::max(0.0, std::min(angle.lo, (Interval(180) - angle).lo)), 90);
+}
+
 struct Normal {
     Models t, c, w;  // along, across, t x c
     explicit Normal(const EdgeSide::Jet& x) : t(part(x, 1)), c(part(x, 2)), w(EdgeSide::normal(x)) {}
@@ -95,7 +101,7 @@ private:
         const EdgeSide::Jet x = e.a.jet(middle, half);
         if (e.curve) {
             Sizes s;
-            s[kC0] = length_of(part(x, e.derivative == 1 ? 2 : 0) - e.curve(middle, half));
+            s[kC0] = e.derivative == kNormal ? angle_of_lines(e.a.normal(middle, half), e.curve(middle, half)) : length_of(part(x, e.derivative == 1 ? 2 : 0) - e.curve(middle, half));
             return s;
         }
         const EdgeSide::Jet y = e.matched ? e.b.jet(e.matched(middle, half)) : e.b.jet(middle, half);

@@ -21,4 +21,9 @@ inline int dyadic_level(std::size_t number) { return static_cast<int>(std::bit_w
 /// number of cells along u, k as in Patch::edge_point.
 inline bool has_edge_forms(const std::vector<Polynomial>& form) { return form.size() == 2; }
 
+/// Surfaces over triangles with singular vertices have exact_cell(k + 1, 0) beside edge k, as in Patch::edge_point: with t along the edge and x across it in the direction of the median,
+/// position, first and second derivatives there are those of f0 + f1 x + (f2 + f3) x^2, where f0 to f3 each are three polynomials in t - 1/2 over a fourth one. The denominators have no
+/// zeros in [0,1], but that of f3 at its ends.
+inline bool has_triangle_form(const std::vector<Polynomial>& form) { return form.size() == 16; }
+
 }  // namespace isoparm
