@@ -148,7 +148,12 @@ EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : p
 
 // With (x,y) = middle + d step + b cross: the powers of b to the second are polynomials in d = 2 s - 1, whose derivatives are those by s, halved.
 std::vector<Jet2> EdgeSide::along_all() const {
-    if (has_triangle_form(exact_)) return form_at(TaylorModel::linear(0.5, 0.5));
+    if (has_triangle_form(exact_)) {
+        auto form = form_at(TaylorModel::linear(0.5, 0.5));
+        for (std::size_t k = 4; k < form.size(); ++k) form[k].c[3] = 0.0;  // nobody asks for these
+        for (std::size_t k = 8; k < form.size(); ++k) form[k].c[1] = 0.0;
+        return form;
+    }
     const auto middle = [](double from, double to, double u0, double u1) {
         return Interval(0.5) * (Interval(from) + Interval(to)) - Interval(mid(Interval(u0, u1)));
     };
@@ -228,17 +233,19 @@ EdgeSide::Jet EdgeSide::jet(const TaylorModel& s) const { return exact_.empty() 
 
 // Beside an edge of a triangle: from the four parts of has_triangle_form(), functions along the edge. Numbers are denominators 1, and no f3.
 EdgeSide::Jet EdgeSide::of_triangle_form(const std::vector<Jet2>& form) const {
-    const auto part = [&](std::size_t k, int axis) {
-        const Jet2& x = form[4 * k + std::size_t(axis)];
-        return exact_[4 * k + 3].degree_u() == 0 ? x : x / form[4 * k + 3];
-    };
+    const auto has = [&](std::size_t k) { return exact_[4 * k + 3].degree_u() > 0; };
+    const auto inverse = [&](std::size_t k) { return TaylorModel(1.0) / form[4 * k + 3].c[0]; };
+    const TaylorModel sign(sign_), first = has(1) ? inverse(1) : TaylorModel(), second = has(2) ? inverse(2) : TaylorModel(), extra = has(3) ? inverse(3) : TaylorModel();
     Jet r;
     for (int axis = 0; axis < 3; ++axis) {
-        const Jet2 f0 = part(0, axis), f1 = part(1, axis);
-        TaylorModel second = part(2, axis).c[0];
-        if (exact_[15].degree_u() > 0) second = second + form[12 + std::size_t(axis)].c[0] / form[15].c[0];
-        const TaylorModel sign(sign_);
-        r[axis].c[0] = f0.c[0], r[axis].c[1] = f0.c[1], r[axis].c[2] = sign * f1.c[0], r[axis].c[3] = f0.c[3], r[axis].c[4] = sign * f1.c[1], r[axis].c[5] = second;
+        const auto part = [&](std::size_t k) -> const Jet2& { return form[4 * k + std::size_t(axis)]; };
+        const Jet2 f0 = has(0) ? part(0) / form[3] : part(0);
+        TaylorModel f1 = part(1).c[0], slope = part(1).c[1], f2 = part(2).c[0];
+        if (has(1)) f1 = f1 * first, slope = (slope - f1 * form[7].c[1]) * first;
+        if (has(2)) f2 = f2 * second;
+        if (has(3)) f2 = f2 + part(3).c[0] * extra;
+        auto& c = r[axis].c;
+        c[0] = f0.c[0], c[1] = f0.c[1], c[2] = sign * f1, c[3] = f0.c[3], c[4] = sign * slope, c[5] = f2;
     }
     return r;
 }

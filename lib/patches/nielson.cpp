@@ -253,6 +253,21 @@ Polynomial3 RayG1::along(int k, bool last, const Polynomial& r) const {
     return constants(V[k]) + H1{}(r) * constants(projected(chord, Vec3<Interval>(at_vertex[k]))) + H2{}(r) * constants(projected(chord, value_at(N[k], end))) + H3{}(r) * constants(chord);
 }
 
+/// By t^2 (1 - t)^2 = (1/16 - s^2/2 + s^4), s = t - 1/2: the quotient; `of` keeps the rest.
+Polynomial divided(Polynomial& of) {
+    const Polynomial s = Polynomial::variable_u({0, 1}) - Polynomial(0.5);
+    std::vector<Interval> c(4);
+    for (int k = 0; k <= of.degree_u(); ++k) c.resize(std::max(c.size(), std::size_t(k) + 1)), c[std::size_t(k)] = of.coefficient(k, 0);
+    for (std::size_t k = c.size(); k-- > 4;) c[k - 2] = c[k - 2] + Interval(0.5) * c[k], c[k - 4] = c[k - 4] - Interval(0.0625) * c[k];
+    const auto sum = [&](std::size_t from, std::size_t to) {
+        Polynomial r;
+        for (std::size_t k = to; k-- > from;) r = r * s + Polynomial(c[k]);
+        return r;
+    };
+    of = sum(0, 4);
+    return sum(4, c.size());
+}
+
 /// The weights of the other two are x^2 / (1 - t)^2 and x^2 / t^2, and O(x^3): position and first derivatives are those of the one of vertex e.
 template <class Ray> std::vector<Polynomial> Nielson<Ray>::beside(int e) const {
     const EdgeFrame f;
@@ -263,6 +278,11 @@ template <class Ray> std::vector<Polynomial> Nielson<Ray>::beside(int e) const {
     const Polynomial tt = f.t * f.t, rr = f.rest * f.rest;
     form->extra = tt * (ray.along((e + 1) % 3, false, f.t) - form->value) + rr * (ray.along((e + 2) % 3, true, f.rest) - form->value);
     form->under[3] = tt * rr;
+    // What agrees at the vertices has those zeros too; what is left of it is rounding.
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!form->extra[axis].exists()) return {};
+        form->second[axis] = form->second[axis] + divided(form->extra[axis]) * form->under[2];
+    }
     return form->list();
 }
 template <class Ray> Patch with_forms(const Nielson<Ray>& formula) {
