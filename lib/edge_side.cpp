@@ -260,10 +260,10 @@ std::vector<Jet2> EdgeSide::form_at(const TaylorModel& s) const {
     if (has_triangle_form(exact_)) {
         // t runs as the second barycentric coordinate falls: on E1 v, on E2 w, on E3 u.
         const bool first = line_.from.x == 0 && line_.to.x == 0, second = !first && line_.from.y == 0 && line_.to.y == 0;
-        const Interval from = first ? Interval(0.5) - Interval(line_.from.y) : second ? Interval(line_.from.x) - Interval(0.5) : Interval(line_.from.y) - Interval(0.5);
+        const Interval from = (first ? Interval(1) - Interval(line_.from.y) : Interval(second ? line_.from.x : line_.from.y)) - Interval(mid(part_of_edge(exact_)));
         const Jet2 t = variable(from, first ? step_of(line_.to.y, line_.from.y) : second ? step_of(line_.from.x, line_.to.x) : step_of(line_.from.y, line_.to.y), 0, s);
         std::vector<Jet2> form;
-        for (const Polynomial& p : exact_) form.push_back(evaluate(p, t, t));
+        for (std::size_t k = 0; k < 16; ++k) form.push_back(evaluate(exact_[k], t, t));
         return form;
     }
     const Jet2 x = variable(Interval(line_.from.x) - Interval(mid(Interval(cell_.u0, cell_.u1))), step_of(line_.from.x, line_.to.x), line_.cross.x, s);

@@ -53,7 +53,7 @@ std::vector<Polynomial> BbgC1::beside(int e) const {
         const Series weight = b[k] * b[k] * (Series(3) - Series(2) * b[k] + Series(6) * b[y] * b[z]);
         sum += weight * (at(on, b[k]) + b[y] * at(q, b[k]) + (ratio(y, z) * at(high, b[k]) - ratio(z, y) * at(low, b[k])));
     }
-    return EdgeForm(sum).list();
+    return EdgeForm(sum).list({0, 1});
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ Patch make_bbg_c1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>&
     }
     const BbgC1 formula{d.E, {Q[0], Q[1], Q[2]}, {G2[0], G2[1], G2[2]}, {G3[0], G3[1], G3[2]}, part};
     if (part != TrianglePart::sum) return make_patch(formula);
-    return with_triangle_forms(make_patch(formula), [formula](int edge) { return formula.beside(edge); });
+    return with_triangle_forms(make_patch(formula), [formula](int edge, std::size_t part) { return part == 0 ? formula.beside(edge) : std::vector<Polynomial>{}; });
 }
 
 }  // namespace isoparm

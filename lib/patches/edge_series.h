@@ -7,6 +7,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <initializer_list>
 #include <utility>
 #include <vector>
 
@@ -35,8 +36,10 @@ inline Series polynomial(const double* c, int degree, const Series& x) {
     return r;
 }
 
+/// Over a part of the edge; polynomials are in t minus its middle.
 struct EdgeFrame {
-    Polynomial t = Polynomial::variable_u({0, 1}), rest = Polynomial(1) - t;  // of 1
+    Interval over{0, 1};
+    Polynomial t = Polynomial::variable_u(over), rest = Polynomial(1) - t;  // of 1
     Series U{0, 1, 0}, V{rest, -0.5, 0}, W{t, -0.5, 0}, r{1, -1, 0}, inverse_r{1, 1, 1}, ratio{t, t - Polynomial(0.5), t - Polynomial(0.5)};
 };
 
@@ -44,11 +47,11 @@ using Polynomial3 = Vec3<Polynomial>;
 using Series3 = Vec3<Series>;
 
 inline bool exists(const Polynomial3& x) { return x.x.exists() && x.y.exists() && x.z.exists(); }
-/// A curve over [0,1] if it is one polynomial, in t - 1/2.
-inline Polynomial3 form_of(const Curve& c) { return c(Polynomial::variable_u({0, 1})); }
-/// At s, a series of numbers in [0,1].
-inline Series3 at(const Polynomial3& curve, const Series& s) {
-    const Series from_middle = s - Series(0.5);
+/// A curve if it is one polynomial on the part.
+inline Polynomial3 form_of(const Curve& c, const Interval& over = {0, 1}) { return c(Polynomial::variable_u(over)); }
+/// At s, a series of numbers in that part.
+inline Series3 at(const Polynomial3& curve, const Series& s, const Interval& over = {0, 1}) {
+    const Series from_middle = s - Series(mid(over));
     Series3 r;
     for (int axis = 0; axis < 3; ++axis)
         for (int k = curve[axis].degree_u(); k >= 0; --k) r[axis] = r[axis] * from_middle + Series(curve[axis].coefficient(k, 0));
@@ -64,8 +67,8 @@ struct EdgeForm {
     explicit EdgeForm(const Series3& s) {
         for (int axis = 0; axis < 3; ++axis) value[axis] = s[axis].c[0], across[axis] = s[axis].c[1], second[axis] = s[axis].c[2];
     }
-    /// As Patch::exact_cell() gives it; empty where something is no polynomial.
-    std::vector<Polynomial> list() const {
+    /// As Patch::exact_cell() gives it, with the part of the edge; empty where something is no polynomial.
+    std::vector<Polynomial> list(const Interval& over) const {
         std::vector<Polynomial> all;
         for (const auto* part : {&value, &across, &second, &extra}) {
             for (int axis = 0; axis < 3; ++axis) all.push_back((*part)[axis]);
@@ -73,11 +76,14 @@ struct EdgeForm {
         }
         for (const Polynomial& p : all)
             if (!p.exists()) return {};
+        all.push_back(over);
         return all;
     }
 };
 
-/// The patch with forms(e) beside its edges, which may be empty; made when asked for.
-Patch with_triangle_forms(Patch patch, std::function<std::vector<Polynomial>(int edge)> forms);
+/// The parts of [0,1] between the breaks of curves.
+std::vector<Interval> parts_of(std::initializer_list<const Curve*> curves);
+/// The patch with forms(e, k) beside part k = 0, 1, ... of its edge e, the last one empty; made when asked for.
+Patch with_triangle_forms(Patch patch, std::function<std::vector<Polynomial>(int edge, std::size_t part)> forms);
 
 }  // namespace isoparm

@@ -121,17 +121,19 @@ struct SideVertex {
             default: return Sum(cone(H, E[1], u, w) + cone(H, E[2], v, u) + cone(H, E[0], w, v) - (H(u) * A + H(v) * B + H(w) * C));
         }
     }
-    std::vector<Polynomial> beside(int e) const;
+    std::vector<Polynomial> beside(int e, std::size_t n) const;
 };
 
-/// The whole surface beside edge e, for a polynomial H = h_1 r + h_2 r^2 + ... With the cones over a / r, r = a + b, of the other two edges, which are run from (a = U) or to (b = U) the vertex
+/// The whole surface beside part n of edge e, for a polynomial H = h_1 r + h_2 r^2 + ... With the cones over a / r, r = a + b, of the other two edges, which are run from (a = U) or to (b = U) the vertex
 /// opposite: r^i (g0 + g1 U/r + g2 U^2/r^2), g0, g1, g2 the Taylor coefficients of the edge (or its bulge) at that end, away from it. Of these U^2/r alone is no polynomial.
-std::vector<Polynomial> SideVertex::beside(int e) const {
-    const EdgeFrame f;
+std::vector<Polynomial> SideVertex::beside(int e, std::size_t n) const {
+    const auto parts = parts_of({&E[e]});
+    if (n >= parts.size()) return {};
+    const EdgeFrame f{parts[n]};
     const Point V[3] = {A, B, C};
     const bool bulges = form == SideVertexForm::delta;
     const Polynomial h = H(Polynomial::variable_u({-1, 1}));  // coefficients of the powers of r
-    const Polynomial3 on = form_of(E[e]);
+    const Polynomial3 on = form_of(E[e], f.over);
     if (!exists(on) || !h.exists() || !RationalCone::zero(h.coefficient(0, 0))) return {};
     Series b[3];
     b[e] = f.U, b[(e + 1) % 3] = f.V, b[(e + 2) % 3] = f.W;
@@ -140,7 +142,7 @@ std::vector<Polynomial> SideVertex::beside(int e) const {
         for (int i = h.degree_u(); i >= 1; --i) sum = (sum + Series(h.coefficient(i, 0))) * r;
         return sum;
     };
-    Series3 curve = at(on, f.ratio), sum;
+    Series3 curve = at(on, f.ratio, f.over), sum;
     if (bulges) curve = curve - ((Series(1) - f.ratio) * constant(V[(e + 1) % 3]) + f.ratio * constant(V[(e + 2) % 3]));
     sum = of(f.r) * curve;
     for (int k = 0; k < 3; ++k) sum = bulges ? sum + b[k] * constant(V[k]) : sum - of(b[k]) * constant(V[k]);
@@ -162,7 +164,7 @@ std::vector<Polynomial> SideVertex::beside(int e) const {
     }
     EdgeForm result(sum);
     if (!RationalCone::zero(h.coefficient(1, 0))) result.extra = extra, result.under[3] = f.t * f.rest;
-    return result.list();
+    return result.list(f.over);
 }
 
 }  // namespace
@@ -179,7 +181,7 @@ Patch make_side_vertex(const std::array<Curve, 3>& edges, const Function& H, Sid
     if (const double gap = std::abs(H(1) - 1); !(gap <= 1e-12)) throw IncompatibleError("H(1) = 1", gap, 1e-12);
     const SideVertex formula{t.E, t.V[0], t.V[1], t.V[2], H, form, part};
     if (part != SideVertexPart::sum) return make_patch(formula);
-    return with_triangle_forms(make_patch(formula), [formula](int edge) { return formula.beside(edge); });
+    return with_triangle_forms(make_patch(formula), [formula](int edge, std::size_t part) { return formula.beside(edge, part); });
 }
 
 }  // namespace isoparm
