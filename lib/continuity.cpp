@@ -99,9 +99,9 @@ void add_segments(const Composite& surface, const Joint& joint, const JointPart&
     };
     std::vector<Cut> cuts{{part.a0, part.b0}, {part.a1, part.b1}};
     const auto inside = [](double t, double t0, double t1) { return t > std::min(t0, t1) + 1e-12 && t < std::max(t0, t1) - 1e-12; };
-    for (const double t : pa.edge_breaks(joint.a.edge))
+    for (const double t : form_breaks(pa, joint.a.edge))
         if (inside(t, part.a0, part.a1)) cuts.push_back({t, partner(run_a, run_b, t)});
-    for (const double t : pb.edge_breaks(joint.b.edge))
+    for (const double t : form_breaks(pb, joint.b.edge))
         if (inside(t, part.b0, part.b1)) cuts.push_back({partner(run_b, run_a, t), t});
     const EdgeCuts parts_a = joint.affine ? dyadic_cuts(pa, joint.a.edge) : EdgeCuts{}, parts_b = joint.affine ? dyadic_cuts(pb, joint.b.edge) : EdgeCuts{};
     std::vector<Cut> fine;

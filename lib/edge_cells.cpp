@@ -46,7 +46,19 @@ void find_cuts(const Patch& patch, int k, int level, double at, EdgeCuts& cuts) 
     find_cuts(patch, k, level + 1, 2 * at + 1, cuts);
 }
 
+std::vector<std::vector<Polynomial>> triangle_forms(const Patch& patch, int edge) {
+    std::vector<std::vector<Polynomial>> list;
+    for (auto form = patch.exact_cell(std::size_t(edge + 1), 0); has_triangle_form(form); form = patch.exact_cell(std::size_t(edge + 1), list.size())) list.push_back(std::move(form));
+    return list;
+}
+
 }  // namespace
+
+int edge_of_triangle(const Vec2& p, const Vec2& q) {
+    if (p.x == 0 && q.x == 0) return 0;
+    if (p.y == 0 && q.y == 0) return 1;
+    return p.x + p.y == 1 && q.x + q.y == 1 ? 2 : -1;
+}
 
 CellForm form_beside(const Patch& patch, const Vec2& from, const Vec2& to, const Vec2& side) {
     const auto u = patch.lines_u(), v = patch.lines_v();
@@ -58,6 +70,15 @@ CellForm form_beside(const Patch& patch, const Vec2& from, const Vec2& to, const
         const int edge = from.x == to.x && from.x == c.u0 ? 3 : from.x == to.x && from.x == c.u1 ? 1 : from.y == to.y && from.y == c.v0 ? 0 : from.y == to.y && from.y == c.v1 ? 2 : -1;
         found.form = edge < 0 ? std::vector<Polynomial>{} : patch.exact_cell(i + std::size_t(edge + 1) * (u.size() - 1), j);
     }
+    if (patch.domain() == Domain::triangle && !has_dyadic_parts(found.form) && found.form.size() != 3)
+        if (const int edge = edge_of_triangle(from, to); edge >= 0) {
+            const double t = edge == 0 ? 1 - middle.y : edge == 1 ? middle.x : middle.y;
+            for (auto& beside : triangle_forms(patch, edge))
+                if (part_of_edge(beside).contains(t)) {
+                    found.form = std::move(beside);
+                    break;
+                }
+        }
     if (!has_dyadic_parts(found.form)) return found;
     // Most lines are a side of a part.
     const double size = std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y));
@@ -73,6 +94,14 @@ CellForm form_beside(const Patch& patch, const Vec2& from, const Vec2& to, const
     }
     if (found.form.empty()) found.cell = patch.rect();
     return found;
+}
+
+std::vector<double> form_breaks(const Patch& patch, int edge) {
+    std::vector<double> breaks = patch.edge_breaks(edge);
+    if (patch.domain() == Domain::triangle && !has_dyadic_parts(patch.exact_cell(0, 0)))
+        for (const auto& form : triangle_forms(patch, edge))
+            if (part_of_edge(form).lo > 0) breaks.push_back(part_of_edge(form).lo);
+    return breaks;
 }
 
 EdgeCuts dyadic_cuts(const Patch& patch, int k) {

@@ -16,6 +16,11 @@ struct CellForm {
 /// line, not beside it.
 CellForm form_beside(const Patch& patch, const Vec2& from, const Vec2& to, const Vec2& side);
 
+/// The edge of the triangle that both points lie on; -1: none.
+int edge_of_triangle(const Vec2& p, const Vec2& q);
+/// Patch::edge_breaks(), and where one form beside edge k of a triangle ends and another begins.
+std::vector<double> form_breaks(const Patch& patch, int edge);
+
 struct EdgeCuts {
     std::vector<double> inner;      // t at which one form ends and another begins, growing; between 0 and 1
     bool starts = false, ends = false;  // no form, and no derivatives, next to t = 0, and to t = 1: an extraordinary vertex

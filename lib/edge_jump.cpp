@@ -44,6 +44,12 @@ Interval angle_of(const Models& p, const Models& q) {
     return degrees_of(y, x);
 }
 
+/// The same of vectors whose sense does not count, 0 to 90.
+Interval angle_of_lines(const Models& p, const Models& q) {
+    const Interval angle = dot(p, q).range().hi < 0 ? angle_of(p, {-q.x, -q.y, -q.z}) : angle_of(p, q);
+    return angle.hi <= 90 ? angle : Interval(std::max(0.0, std::min(angle.lo, (Interval(180) - angle).lo)), 90);
+}
+
 struct Normal {
     Models t, c, w;  // along, across, t x c
     explicit Normal(const EdgeSide::Jet& x) : t(part(x, 1)), c(part(x, 2)), w(EdgeSide::normal(x)) {}
@@ -56,6 +62,8 @@ TaylorModel cross_curvature(const EdgeSide::Jet& x, const Normal& n) {
     const TaylorModel L = twice(dot(part(x, 3), n.w)), M = dot(part(x, 4), n.w), N = twice(dot(part(x, 5), n.w));
     return ((L * F - twice(M * E)) * F + N * (E * E)) / (E * ww * sqrt(ww));
 }
+
+bool second_bounded(const EdgeSide::Jet& x) { return x.x.c[5].bounded() && x.y.c[5].bounded() && x.z.c[5].bounded(); }
 
 class Bounder {
 public:
@@ -72,8 +80,9 @@ public:
         for (int m; (m = first_open()) < kMeasures; ++halved_[m]) {
             const Piece p = pieces_[worst_[m]];
             pieces_[worst_[m]] = pieces_.back(), pieces_.pop_back();
-            add(p.segment, p.middle - p.half / 2, p.half / 2);
-            add(p.segment, p.middle + p.half / 2, p.half / 2);
+            const double cut = cut_of(p, m), from = p.middle - p.half, to = p.middle + p.half;
+            add(p.segment, 0.5 * (from + cut), 0.5 * (cut - from));
+            add(p.segment, 0.5 * (cut + to), 0.5 * (to - cut));
         }
         for (JumpBound& b : bounds_) b.upper = b.singular.empty() ? b.inside : kInfinite;
         return bounds_;
@@ -92,12 +101,12 @@ private:
             const Vec3<Interval> apart = e.a.positions(middle, half) - e.b.positions(middle, half);
             return {length_of({apart.x, apart.y, apart.z}), kUnknown, kUnknown, kUnknown, kUnknown};
         }
-        const EdgeSide::Jet x = e.a.jet(middle, half);
         if (e.curve) {
             Sizes s;
-            s[kC0] = length_of(part(x, e.derivative == 1 ? 2 : 0) - e.curve(middle, half));
+            s[kC0] = e.derivative == kNormal ? angle_of_lines(e.a.normal(middle, half), e.curve(middle, half)) : length_of(part(e.a.jet(middle, half), e.derivative == 1 ? 2 : 0) - e.curve(middle, half));
             return s;
         }
+        const EdgeSide::Jet x = e.a.jet(middle, half);
         const EdgeSide::Jet y = e.matched ? e.b.jet(e.matched(middle, half)) : e.b.jet(middle, half);
         const auto jump = [&](int n) { return part(x, n) - part(y, n); };
         if (e.singular) return {length_of(jump(0)), kUnknown, kUnknown, kUnknown, kUnknown};
@@ -107,7 +116,7 @@ private:
         if (open(kC1)) s[kC1] = length_of(jump(2));
         if (open(kC2)) s[kC2] = length_of(jump(5)) * Interval(2);
         if (open(kG1)) s[kG1] = e.matched ? angle_of(e.a.normal(middle, half), EdgeSide::normal(y)) : angle_of(e.a.normal(middle, half), e.b.normal(middle, half));
-        if (open(kG2)) {
+        if (open(kG2) && second_bounded(x) && second_bounded(y)) {
             const Normal p(x), q(y);
             const Interval r = (cross_curvature(x, p) - cross_curvature(y, q)).range();
             s[kG2] = r.bounded() ? abs(r) : kUnknown;
@@ -139,6 +148,14 @@ private:
     /// Too short to be halved, and nothing known: the end of an edge at a pole or a singular corner.
     bool at_tip(const Piece& p) const {
         return segments_[p.segment].singular || (p.half <= kTip / 2 && ((p.segment == 0 && p.middle - p.half <= 0) || (p.segment + 1 == segments_.size() && p.middle + p.half >= 1)));
+    }
+
+    /// Its middle; at a singular end, just what has no bound is cut off.
+    double cut_of(const Piece& p, int m) const {
+        const bool none = p.upper[m] == kInfinite && p.half > kTip && segments_[p.segment].a.exact() && segments_[p.segment].b.exact();
+        if (none && p.segment == 0 && p.middle - p.half <= 0) return kTip;
+        if (none && p.segment + 1 == segments_.size() && p.middle + p.half >= 1) return 1 - kTip;
+        return p.middle;
     }
 
     void add_end(JumpBound& b, const Piece& p) const {

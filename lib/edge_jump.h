@@ -25,6 +25,8 @@ struct JumpBound {
 
 inline constexpr double kTip = 0x1p-12;  // of the length of an edge: next to a singular end, where nothing is known
 
+inline constexpr int kNormal = 2;
+
 /// A part of an edge within one cell of either side.
 struct EdgeSegment {
     EdgeSide a, b;
@@ -32,7 +34,8 @@ struct EdgeSegment {
     std::function<TaylorModel(double middle, double half)> matched;
     /// Then, at most the distance of the point of a at s from all of the edge of b: the lower bound of c0.
     std::function<double(double s)> distance;
-    /// What a is compared with instead of b, if anything: its position, or with derivative 1 its derivative across, against this curve (c0 alone).
+    /// What a is compared with instead of b, if anything: its position, or with derivative 1 its derivative across, against this curve (c0 alone). With kNormal c0 is an angle, in degrees, 0 to
+    /// 90: of the normal with this direction or the opposite one.
     std::function<Vec3<TaylorModel>(double middle, double half)> curve;
     int derivative = 0;
     /// Next to an extraordinary vertex (2^-12 of the edge), where derivatives have no bound: its parameters on side a. Positions alone are compared.

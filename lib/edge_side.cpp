@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "edge_cells.h"
+#include "exact_parts.h"
 
 namespace isoparm {
 namespace {
@@ -129,6 +130,7 @@ EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : p
     const CellForm cell = form_beside(patch_, line.from, line.to, side);
     cell_ = cell.cell, exact_ = cell.form;
     if (exact_.empty()) return;
+    if (has_triangle_form(exact_)) sign_ = line.cross.x * side.x + line.cross.y * side.y > 0 ? 1 : -1;
     whole_ = along_all();
     for (const Jet2& x : whole_)
         for (const TaylorModel& c : x.c)
@@ -146,6 +148,12 @@ EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : p
 
 // With (x,y) = middle + d step + b cross: the powers of b to the second are polynomials in d = 2 s - 1, whose derivatives are those by s, halved.
 std::vector<Jet2> EdgeSide::along_all() const {
+    if (has_triangle_form(exact_)) {
+        auto form = form_at(TaylorModel::linear(0.5, 0.5));
+        for (std::size_t k = 4; k < form.size(); ++k) form[k].c[3] = 0.0;  // nobody asks for these
+        for (std::size_t k = 8; k < form.size(); ++k) form[k].c[1] = 0.0;
+        return form;
+    }
     const auto middle = [](double from, double to, double u0, double u1) {
         return Interval(0.5) * (Interval(from) + Interval(to)) - Interval(mid(Interval(u0, u1)));
     };
@@ -191,7 +199,8 @@ void EdgeSide::find_directions() {
         Vec3<TaylorModel>& t = directions_[std::size_t(n - 1)];
         for (int axis = 0; axis < 3; ++axis) {
             const auto& x = whole_[std::size_t(axis)].c;
-            t[axis] = whole_.size() == 3 ? x[n] : x[n] * whole_[3].c[0] - x[0] * whole_[3].c[n];
+            if (n == 2 && has_triangle_form(exact_)) t[axis] = TaylorModel(sign_) * whole_[std::size_t(4 + axis)].c[0];
+            else t[axis] = whole_.size() == 3 ? x[n] : x[n] * whole_[3].c[0] - x[0] * whole_[3].c[n];
             if (!t[axis].exact()) return;
         }
         for (const double end : {-1.0, 1.0})
@@ -222,12 +231,41 @@ EdgeSide::Jet EdgeSide::jet(double middle, double half) const {
 
 EdgeSide::Jet EdgeSide::jet(const TaylorModel& s) const { return exact_.empty() ? enclosed(s) : of_form(form_at(s)); }
 
+// Beside an edge of a triangle: from the four parts of has_triangle_form(), functions along the edge. Numbers are denominators 1, and no f3.
+EdgeSide::Jet EdgeSide::of_triangle_form(const std::vector<Jet2>& form) const {
+    const auto has = [&](std::size_t k) { return exact_[4 * k + 3].degree_u() > 0; };
+    const auto inverse = [&](std::size_t k) { return TaylorModel(1.0) / form[4 * k + 3].c[0]; };
+    const TaylorModel sign(sign_), first = has(1) ? inverse(1) : TaylorModel(), second = has(2) ? inverse(2) : TaylorModel(), extra = has(3) ? inverse(3) : TaylorModel();
+    Jet r;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto part = [&](std::size_t k) -> const Jet2& { return form[4 * k + std::size_t(axis)]; };
+        const Jet2 f0 = has(0) ? part(0) / form[3] : part(0);
+        TaylorModel f1 = part(1).c[0], slope = part(1).c[1], f2 = part(2).c[0];
+        if (has(1)) f1 = f1 * first, slope = (slope - f1 * form[7].c[1]) * first;
+        if (has(2)) f2 = f2 * second;
+        if (has(3)) f2 = f2 + part(3).c[0] * extra;
+        auto& c = r[axis].c;
+        c[0] = f0.c[0], c[1] = f0.c[1], c[2] = sign * f1, c[3] = f0.c[3], c[4] = sign * slope, c[5] = f2;
+    }
+    return r;
+}
+
 EdgeSide::Jet EdgeSide::of_form(const std::vector<Jet2>& form) const {
+    if (has_triangle_form(exact_)) return of_triangle_form(form);
     if (form.size() == 3) return {form[0], form[1], form[2]};
     return {form[0] / form[3], form[1] / form[3], form[2] / form[3]};
 }
 
 std::vector<Jet2> EdgeSide::form_at(const TaylorModel& s) const {
+    if (has_triangle_form(exact_)) {
+        // t runs as the second barycentric coordinate falls: on E1 v, on E2 w, on E3 u.
+        const bool first = line_.from.x == 0 && line_.to.x == 0, second = !first && line_.from.y == 0 && line_.to.y == 0;
+        const Interval from = (first ? Interval(1) - Interval(line_.from.y) : Interval(second ? line_.from.x : line_.from.y)) - Interval(mid(part_of_edge(exact_)));
+        const Jet2 t = variable(from, first ? step_of(line_.to.y, line_.from.y) : second ? step_of(line_.from.x, line_.to.x) : step_of(line_.from.y, line_.to.y), 0, s);
+        std::vector<Jet2> form;
+        for (std::size_t k = 0; k < 16; ++k) form.push_back(evaluate(exact_[k], t, t));
+        return form;
+    }
     const Jet2 x = variable(Interval(line_.from.x) - Interval(mid(Interval(cell_.u0, cell_.u1))), step_of(line_.from.x, line_.to.x), line_.cross.x, s);
     const Jet2 y = variable(Interval(line_.from.y) - Interval(mid(Interval(cell_.v0, cell_.v1))), step_of(line_.from.y, line_.to.y), line_.cross.y, s);
     std::vector<Jet2> form;

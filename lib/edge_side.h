@@ -45,6 +45,7 @@ public:
 
 private:
     std::vector<JetUV<TaylorModel, 2>> along_all() const;
+    Jet of_triangle_form(const std::vector<JetUV<TaylorModel, 2>>& form) const;
     Jet of_form(const std::vector<JetUV<TaylorModel, 2>>& form) const;
     std::vector<JetUV<TaylorModel, 2>> form_at(const TaylorModel& s) const;
     Jet enclosed(const TaylorModel& s) const;
@@ -55,6 +56,7 @@ private:
     ParameterLine line_;
     Rect cell_;
     std::vector<Polynomial> exact_;
+    double sign_ = 1;  // beside an edge of a triangle: of line.cross, 1 inward
     std::vector<JetUV<TaylorModel, 2>> whole_;  // over all of s in [0,1], where that is exact
     std::array<Vec3<TaylorModel>, 2> directions_;  // then of S_s and S_cross, without the zeros at the ends
     bool has_directions_ = false;

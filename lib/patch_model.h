@@ -100,6 +100,7 @@ public:
     }
     const PolynomialCells* batch() const override { return batch_.exist() ? &batch_ : nullptr; }
     std::vector<Polynomial> exact_cell(std::size_t i, std::size_t j) const override {
+        if (i + 1 >= edges_u_.size() || j + 1 >= edges_v_.size()) return {};  // forms beside edges (exact_parts.h)
         if (const auto* p = exact(i, j)) return {p->x, p->y, p->z};
         auto form = homogeneous_form({edges_u_[i], edges_u_[i + 1]}, {edges_v_[j], edges_v_[j + 1]});
         if (!std::all_of(form.begin(), form.end(), [](const Polynomial& x) { return x.exists(); })) form.clear();

@@ -165,4 +165,26 @@ DataReport examine_nielson(const std::array<Curve, 3>& edges, const std::array<C
     return r;
 }
 
+DataReport examine_nielson_g1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& normals) {
+    DataReport r = examine_triangle(edges);
+    const TriangleEdges t(edges);
+    std::array<Curve, 3> N = normals;
+    for (Curve& n : N) n = reparametrized(n, 0, 1);
+    const auto sine = [](const Point& a, const Point& b) { return length(b) == 0 ? 0 : length(cross(normalized(a), normalized(b))); };
+    const auto cosine = [](const Point& a, const Point& b) { return length(b) == 0 ? 0 : std::fabs(dot(normalized(a), normalized(b))); };
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;  // E_i ends and E_j begins at vertex k
+        const std::string at = std::string("normals at ") + "ABC"[k] + ": N" + std::to_string(j + 1) + "(0) ";
+        r.conditions.push_back({at + "parallel to N" + std::to_string(i + 1) + "(1) (sine of the angle)", sine(N[i](1), N[j](0)), compatibility_tolerance, ""});
+        r.conditions.push_back({at + "normal to E" + std::to_string(i + 1) + "'(1) (sine of the angle)", cosine(N[j](0), t.E[i].derivative(1)), compatibility_tolerance, ""});
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        r.promises[k].on_edge = make_nielson_g1(edges, normals, TrianglePart(k + 1));
+        Promise p = r.promises[k];
+        p.what = "N" + std::to_string(k + 1) + " is the direction of the normal", p.curve = N[k], p.derivative = kNormal;
+        r.promises.push_back(p);
+    }
+    return r;
+}
+
 }  // namespace isoparm

@@ -22,7 +22,8 @@ struct Condition {
     double gap = 0, tolerance = 0;  // a condition holds when gap <= tolerance
     std::string remedy;             // what the surface does about a gap; empty: nothing, so that it could not have been built
 };
-/// A curve that the surface interpolates along a line of its domain, or, with derivative 1, a derivative across that line (along line.cross).
+/// A curve that the surface interpolates along a line of its domain, or, with derivative 1, a derivative across that line (along line.cross), or, with kNormal, a direction normal to the
+/// surface, whose residual is an angle in degrees.
 struct Promise {
     std::string what;
     ParameterLine line;
@@ -56,6 +57,8 @@ DataReport examine_triangle(const std::array<Curve, 3>& edges);
 DataReport examine_triangle(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross);
 /// The same of make_nielson_c1(): on E_k the weights of the other two rays' interpolants have double zeros, so that the one of vertex k alone stands for the surface there.
 DataReport examine_nielson(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross);
+/// Of make_nielson_g1(), likewise. Conditions on normals are sines of angles.
+DataReport examine_nielson_g1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& normals);
 
 /// How far the patch is from keeping the promise: certified bounds for the whole line. Safe to call from every thread.
 JumpBound bound_residual(const Patch& patch, const Promise& promise, double tolerance);

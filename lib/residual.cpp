@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "edge_cells.h"
 #include "promises.h"
 
 namespace isoparm {
@@ -49,6 +50,9 @@ JumpBound bound_residual(const Patch& of, const Promise& promise, double toleran
             const double start = along_u ? from.x : from.y, s = (t - start) / ((along_u ? to.x : to.y) - start);
             if (std::none_of(cuts.begin(), cuts.end(), [&](const auto& c) { return std::fabs(c.first - s) < 1e-12; })) cuts.push_back({s, curve.begin() + s * length});
         }
+    else if (const int edge = edge_of_triangle(from, to); edge >= 0)
+        for (const double s : form_breaks(patch, edge))
+            if (std::none_of(cuts.begin(), cuts.end(), [&](const auto& c) { return std::fabs(c.first - s) < 1e-12; })) cuts.push_back({s, curve.begin() + s * length});
     std::sort(cuts.begin(), cuts.end());
     std::vector<EdgeSegment> segments;
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {

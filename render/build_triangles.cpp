@@ -116,6 +116,7 @@ BuiltSurface build_coons_triangle(const Json& j, SceneBuilder& scene) {
         BuiltSurface s(std::move(patch));
         if (part != 0) return s;
         if (method.name == std::string("nielson_c1")) return s.examined([c] { return examine_nielson(c.edges, c.along); });
+        if (method.name == std::string("nielson_g1")) return s.examined([c] { return examine_nielson_g1(c.edges, c.along); });
         if (method.along && method.along == std::string("cross")) return s.examined([c] { return examine_triangle(c.edges, c.along); });
         return s.examined([c] { return examine_triangle(c.edges); });
     };

@@ -8,9 +8,17 @@
 #include "cages.h"
 #include "continuity.h"
 #include "curves/bezier.h"
+#include "curves/bspline.h"
+#include "curves/modify.h"
 #include "edge_cells.h"
 #include "patches/coons_hermite.h"
+#include "patches/bbg.h"
+#include "patches/nielson.h"
+#include "patches/side_vertex.h"
 #include "patches/tensor_bezier.h"
+#include "patches/transformed.h"
+#include "promises.h"
+#include "samples.h"
 #include "subdivision.h"
 
 namespace isoparm::test {
@@ -70,6 +78,114 @@ TEST(EdgeForms, GregorysSquareIsRationalOnItsEdges) {
     for (int edge = 0; edge < 4; ++edge) EXPECT_TRUE(expect_edge_jets(gregory, edge, 0, 1)) << edge;
     // Not on other lines.
     EXPECT_FALSE(EdgeSide(gregory, {{0.5, 0}, {0.5, 1}, {1, 0}}, {1, 0}).exact());
+}
+
+Transform affine(const std::array<double, 4>& x, const std::array<double, 4>& y, const std::array<double, 4>& z) {
+    Transform t;
+    t.m = {x, y, z};
+    return t;
+}
+std::array<Curve, 3> quartic_edges() {
+    const auto b = [](std::vector<Point> p) { return make_bezier(std::move(p)); };
+    return {b({{0, 2, 0}, {0.1, 1.5, 0.8}, {-0.2, 1, 0.3}, {0, 0, 0.1}}), b({{0, 0, 0.1}, {0.7, 0.1, 0.7}, {1.2, 0, 0.2}, {1.5, -0.1, 0.4}, {2, 0, 0}}), b({{2, 0, 0}, {1, 1.2, 0.9}, {0, 2, 0}})};
+}
+/// Along E_k from where its neighbour ends to where the other one begins, with a bulge of its own.
+std::array<Curve, 3> median_derivatives(const std::array<Curve, 3>& E) {
+    std::vector<Curve> D;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+        const Point first = -1.0 * E[j].derivative(1) - 0.5 * E[k].derivative(0), last = E[i].derivative(0) + 0.5 * E[k].derivative(1);
+        D.push_back(make_bezier({first, 0.5 * (first + last) + Point{0.3, -0.2, 1.0 + double(k)}, last}));
+    }
+    return {D[0], D[1], D[2]};
+}
+
+TEST(EdgeForms, TrianglesWithSingularVerticesAreRationalBesideTheirEdges) {
+    const auto E = quartic_edges();
+    const auto D = median_derivatives(E);
+    // Normals of cubic edges in a common plane at each vertex: those of the C1 surface there.
+    const std::array<Curve, 3> flat{make_bezier({{0, 2, 0}, {0, 1, 1}, {0, 0, 0}}), make_bezier({{0, 0, 0}, {1, 0, 1}, {2, 0, 0}}), make_bezier({{2, 0, 0}, {1, 1, 2}, {0, 2, 0}})};
+    const auto N = tests::normals_of(flat, median_derivatives(flat));
+    const Function square = Function::polynomial({0, 0, 1}), mixed = Function::polynomial({0, 0.5, -1, 1.5});
+    const std::pair<const char*, Patch> patches[] = {{"bbg_c1", make_bbg_c1(E, D)}, {"nielson_c1", make_nielson_c1(E, D)}, {"nielson_g1", make_nielson_g1(flat, N)},
+        {"side_vertex", make_side_vertex(E, square)}, {"seed", make_side_vertex(E, square, SideVertexForm::seed)}, {"H = t/2 - t^2 + 3/2 t^3", make_side_vertex(E, mixed)},
+        {"seed, the same", make_side_vertex(E, mixed, SideVertexForm::seed)}, {"moved", transformed(make_nielson_g1(flat, N), affine({1, 0.2, 0, 3}, {-0.3, 1, 0, 1}, {0, 0.5, 2, -1}))}};
+    for (const auto& [name, patch] : patches)
+        for (int edge = 0; edge < 3; ++edge) {
+            SCOPED_TRACE(name);
+            EXPECT_TRUE(expect_edge_jets(patch, edge, 0, 1));
+            EXPECT_TRUE(expect_edge_jets(patch, edge, 0.75, 0.25));  // backwards
+            const ParameterLine line = edge_line(patch, edge, 0, 1);
+            EXPECT_TRUE(EdgeSide(patch, {line.from, line.to, {-line.cross.x, -line.cross.y}}, line.cross).exact());
+        }
+    // Edges of several pieces: one form each.
+    const auto spline = [](std::vector<Point> p) { return make_bspline(3, {0, 0, 0, 0, 0.375, 1, 1, 1, 1}, std::move(p)); };
+    const std::array<Curve, 3> S{spline({{0, 2, 0}, {0, 1.5, 0.5}, {0.1, 1, 0.8}, {0, 0.5, 0.2}, {0, 0, 0}}), spline({{0, 0, 0}, {0.5, 0, 0.4}, {1, 0.2, 0.1}, {1.5, 0, 0}, {2, 0, 0}}),
+                                 spline({{2, 0, 0}, {1.5, 0.5, 0}, {1, 1.2, 0.7}, {0.5, 1.5, 0.1}, {0, 2, 0}})};
+    for (const auto& [name, patch] : {std::pair("side_vertex", make_side_vertex(S, square)), {"nielson_c1", make_nielson_c1(S, median_derivatives(S))}})
+        for (int edge = 0; edge < 3; ++edge) {
+            SCOPED_TRACE(name);
+            EXPECT_EQ(form_breaks(patch, edge), std::vector<double>{0.375});
+            EXPECT_TRUE(expect_edge_jets(patch, edge, 0, 0.375));
+            EXPECT_TRUE(expect_edge_jets(patch, edge, 1, 0.375));
+        }
+    for (const Promise& p : examine_nielson(S, median_derivatives(S)).promises) EXPECT_LE(bound_residual(make_nielson_c1(S, median_derivatives(S)), p, 1e-9).upper, 1e-11) << p.what;
+    EXPECT_FALSE(EdgeSide(patches[1].second, {{0.5, 0}, {0.5, 0.5}, {1, 0}}, {1, 0}).exact());
+}
+
+/// Two triangles along E3 whose cross derivatives continue each other but for h at its middle.
+TEST(EdgeForms, JumpsPlantedBetweenTrianglesLieInTheirBounds) {
+    const auto E = quartic_edges();
+    const auto D = median_derivatives(E);
+    const Point p[3] = {D[2](0), 2 * D[2](0.5) - 0.5 * (D[2](0) + D[2](1)), D[2](1)};
+    const Curve back = make_bezier({{0, 2, 0}, {1, 1.2, 0.9}, {2, 0, 0}});
+    const Point far = E[2](0) + E[2](1) - E[0](1), tangent_b = -1.0 * p[0] - 0.5 * back.derivative(1), tangent_a = 0.5 * back.derivative(0) - p[2];
+    // From B' = A to C' and from C' to A' = B, with the tangents that D3' asks for.
+    const std::array<Curve, 3> F{make_bezier({E[2](0), E[2](0) + (1 / 3.0) * tangent_b, far, far}), make_bezier({far, far, E[2](1) + (1 / 3.0) * tangent_a, E[2](1)}), back};
+    ContinuityOptions o;
+    o.size = 4, o.tolerance = 1e-10, o.curvature = 1e-9, o.capture = 0.04;
+    for (const bool nielson : {false, true})
+        for (const double h : {1e-3, 1e-6, 1e-9, 0.0}) {
+            auto G = median_derivatives(F);
+            G[2] = make_bezier({-1.0 * p[2], -1.0 * p[1] + Point{0, 0, 2 * h}, -1.0 * p[0]});
+            const Composite pair{{"a", nielson ? make_nielson_c1(E, D) : make_bbg_c1(E, D)}, {"b", nielson ? make_nielson_c1(F, G) : make_bbg_c1(F, G)}};
+            const Continuity found = find_continuity(pair, o);
+            ASSERT_EQ(found.joints.size(), 1u);
+            const auto& jumps = found.joints[0].jumps;
+            EXPECT_LT(jumps[kC0].upper, 1e-12);
+            EXPECT_LE(jumps[kC1].lower, h * 1.0001 + 2e-14);
+            EXPECT_GE(jumps[kC1].upper, h * 0.9999);
+            EXPECT_LE(jumps[kC1].upper, 1.02 * h + 1e-11);
+            if (h > 0) EXPECT_GE(jumps[kC1].lower, 0.98 * h);
+            const std::string order = order_of(found.joints[0], o).text;
+            EXPECT_EQ(order, h == 0 ? "C1" : h > 1e-8 ? "C0" : "G1") << h;
+        }
+}
+
+TEST(EdgeForms, NielsonsNormalsAreProvedAndWrongOnesRefused) {
+    const std::array<Curve, 3> E{make_bezier({{0, 2, 0}, {0, 1, 1}, {0, 0, 0}}), make_bezier({{0, 0, 0}, {1, 0, 1}, {2, 0, 0}}), make_bezier({{2, 0, 0}, {1, 1, 2}, {0, 2, 0}})};
+    const auto N = tests::normals_of(E, median_derivatives(E));
+    const Patch patch = make_nielson_g1(E, N);
+    int normals = 0;
+    for (const Promise& p : examine_nielson_g1(E, N).promises) {
+        const JumpBound kept = bound_residual(patch, p, 1e-9);
+        EXPECT_LE(kept.upper, 1e-9) << p.what;
+        if (p.derivative != kNormal) continue;
+        ++normals;
+        Promise turned = p;  // by an angle of 1e-5
+        turned.curve = transformed(p.curve, affine({1, -1e-5, 0, 0}, {1e-5, 1, 0, 0}, {0, 0, 1, 0}));
+        const JumpBound broken = bound_residual(patch, turned, 1e-9);
+        EXPECT_GT(broken.lower, 1e-4) << p.what;
+        EXPECT_LE(broken.upper, 1.02 * broken.lower) << p.what;
+        double most = 0;  // by samples
+        for (int k = 0; k <= 200; ++k) {
+            const double s = k / 200.0;
+            const Point n = turned.curve(s), m = p.curve(s);
+            most = std::max(most, std::atan2(length(cross(n, m)), std::fabs(dot(n, m))) * 180 / M_PI);
+        }
+        EXPECT_NEAR(broken.lower, most, 1e-3 * most) << p.what;
+    }
+    EXPECT_EQ(normals, 3);
 }
 
 using Rows = std::vector<Point>;

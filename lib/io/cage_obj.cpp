@@ -1,114 +1,35 @@
 #include "io/cage_obj.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <set>
 #include <string_view>
 
 #include "error.h"
+#include "io/obj_statements.h"
 #include "printable_text.h"
 
 namespace isoparm {
 namespace {
 
-constexpr double max_coordinate = 1e100;  // squares and products of lengths stay finite
 constexpr int max_face_size = 65535;      // OpenSubdiv's own limit
 constexpr std::size_t max_elements = 100'000'000;
 
-struct Place {
-    int line = 0, column = 0;
-};
-struct Token {
-    std::string_view text;
-    Place place;
-};
+using Place = ObjStatements::Place;
+using Token = ObjStatements::Token;
 
-class Reader {
+class Reader : ObjStatements {
 public:
-    Reader(const std::string& text, const std::string& path) : text_(text), path_(path) {}
+    using ObjStatements::ObjStatements;
 
     Cage read() {
-        for (std::size_t at = 0; at < text_.size();) {
-            const std::size_t end = std::min(text_.find('\n', at), text_.size());
-            ++line_;
-            std::string_view line = std::string_view(text_).substr(at, end - at);
-            const bool goes_on = continues(line);
-            split(line);
-            at = end + 1;
-            if (goes_on && at < text_.size()) continue;
-            if (!tokens_.empty()) statement();
-            tokens_.clear();
-        }
+        while (advance()) statement();
         finish();
         return std::move(cage_);
     }
 
 private:
-    [[noreturn]] void fail(Place p, const std::string& found, const std::string& expected) const {
-        throw_input(path_ + ":" + std::to_string(p.line) + ":" + std::to_string(p.column) + ": found " + found +
-                    ", expected " + expected);
-    }
-
-    static constexpr std::string_view space = " \t\r\v\f";
-
-    /// A backslash at the end, outside of comments, joins the next line to this one. It is cut off.
-    static bool continues(std::string_view& line) {
-        const std::size_t last = line.find_last_not_of(space);
-        if (last == line.npos || line[last] != '\\' || line.find('#') != line.npos) return false;
-        line = line.substr(0, last);
-        return true;
-    }
-
-    /// Adds the tokens of a line to those of the statement.
-    void split(std::string_view line) {
-        next_ = 1;
-        std::size_t at = 0;
-        while ((at = line.find_first_not_of(space, at)) != line.npos && line[at] != '#') {
-            const std::size_t end = std::min(line.find_first_of(space, at), line.size());
-            tokens_.push_back({line.substr(at, end - at), {line_, static_cast<int>(at) + 1}});
-            at = end;
-        }
-        end_ = {line_, static_cast<int>(std::min(line.find_last_not_of(space) + 1, line.size())) + 1};
-    }
-
-    bool more() const { return next_ < tokens_.size(); }
-    Token token(const char* expected) {
-        if (!more()) fail(end_, "the end of the line", expected);
-        return tokens_[next_++];
-    }
-    void nothing_more(const char* after) {
-        if (more()) fail(tokens_[next_].place, in_quotes(tokens_[next_].text), std::string("nothing after ") + after);
-    }
-
-    double number(const char* expected) {
-        const Token t = token(expected);
-        const std::string_view digits = t.text.substr(t.text.starts_with('+'));
-        double x = 0;
-        const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
-        if (status == std::errc::result_out_of_range && end == digits.data() + digits.size()) {
-            // too small rounds to zero, too large is refused: only the exponent's sign tells
-            if (digits.find("e-") != digits.npos || digits.find("E-") != digits.npos) return 0;
-        } else if (status == std::errc() && end == digits.data() + digits.size() && std::abs(x) <= max_coordinate) {
-            return x;
-        }
-        fail(t.place, in_quotes(t.text), std::string(expected) + ": a finite number of at most 1e100 in size");
-    }
-
-    /// A part of a token, or all of it.
-    int integer(std::string_view text, const Token& t, const char* expected) const {
-        int x = 0;
-        const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), x);
-        if (status != std::errc() || end != text.data() + text.size()) fail(t.place, in_quotes(t.text), expected);
-        return x;
-    }
-    int integer(const char* expected) {
-        const Token t = token(expected);
-        return integer(t.text, t, expected);
-    }
-
     void statement() {
-        const std::string_view word = tokens_[0].text;
+        const std::string_view word = keyword().text;
         static const std::set<std::string_view> passed_over = {
             "vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib", "usemap", "maplib", "l", "p",
             "lod", "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj", "mg"};
@@ -116,21 +37,21 @@ private:
         else if (word == "f") face();
         else if (word == "t") tag();
         else if (!passed_over.contains(word))
-            fail(tokens_[0].place, in_quotes(word), "an OBJ statement of a polygon mesh: v, vt, vn, f, g, o, s, usemtl, mtllib, l, p; or a tag t");
+            fail(keyword().place, in_quotes(word), "an OBJ statement of a polygon mesh: v, vt, vn, f, g, o, s, usemtl, mtllib, l, p; or a tag t");
     }
 
     void vertex() {
         Point p;
         for (int k = 0; k < 3; ++k) p[k] = number("a coordinate");
-        const std::size_t extra = tokens_.size() - next_;
+        const std::size_t extra = left();
         if (extra == 1) {
-            const Token w = tokens_[next_];
-            if (number("the weight 1") != 1) fail(w.place, in_quotes(w.text), "the weight 1: rational cages have no subdivision surface");
+            const Place at = place();
+            if (const double w = number("the weight 1"); w != 1) fail(at, in_quotes(to_text(w)), "the weight 1: rational cages have no subdivision surface");
         } else if (extra == 3) {
             for (int k = 0; k < 3; ++k) number("a colour");  // as some programs append
         }
         nothing_more("x y z (and a weight of 1, or a colour)");
-        if (cage_.positions.size() == max_elements) fail(tokens_[0].place, "one more vertex", "at most 100000000");
+        if (cage_.positions.size() == max_elements) fail(keyword().place, "one more vertex", "at most 100000000");
         cage_.positions.push_back(p);
     }
 
@@ -142,12 +63,12 @@ private:
             corners.push_back(face_vertex(t));
             places.push_back(t.place);
         }
-        if (corners.size() < 3) fail(end_, "a face of " + std::to_string(corners.size()) + " vertices", "at least 3");
+        if (corners.size() < 3) fail(end(), "a face of " + std::to_string(corners.size()) + " vertices", "at least 3");
         if (corners.size() > max_face_size) fail(places[max_face_size], "a face of " + std::to_string(corners.size()) + " vertices", "at most 65535");
         refuse_repetition(corners, places);
-        if (cage_.faces.size() == max_elements) fail(tokens_[0].place, "one more face", "at most 100000000");
+        if (cage_.faces.size() == max_elements) fail(keyword().place, "one more face", "at most 100000000");
         cage_.faces.push_back(std::move(corners));
-        cage_.face_lines.push_back(line_);
+        cage_.face_lines.push_back(line());
     }
 
     int face_vertex(const Token& t) {
@@ -200,7 +121,7 @@ private:
         if (b == t.text.npos) fail(t.place, in_quotes(t.text), form);
         const int ints = integer(t.text.substr(0, a), t, form), floats = integer(t.text.substr(a + 1, b - a - 1), t, form);
         const int strings = integer(t.text.substr(b + 1), t, form);
-        const auto values = static_cast<long long>(tokens_.size() - next_);
+        const auto values = static_cast<long long>(left());
         if (ints < 0 || floats < 0 || strings < 0 || static_cast<long long>(ints) + floats + strings != values)
             fail(t.place, in_quotes(t.text) + " before " + std::to_string(values) + " values", "numbers that add up to them");
         return {ints, floats};
@@ -211,13 +132,13 @@ private:
         Place place;
     };
     Index tag_index(const char* expected) {
-        const Place place = more() ? tokens_[next_].place : end_;
+        const Place place = this->place();
         const int i = integer(expected);
         if (i < 0) fail(place, std::to_string(i), std::string(expected) + ", counted from 0");
         return {i, place};
     }
     double sharpness() {
-        const Place place = more() ? tokens_[next_].place : end_;
+        const Place place = this->place();
         const double s = number("a sharpness");
         if (s < 0) fail(place, to_text(s), "a sharpness of 0 or more");
         return s;
@@ -251,7 +172,7 @@ private:
         for (int k = 0; k < ints; ++k) cage_.holes.push_back(holes_.emplace_back(tag_index("a face")).index);
     }
     void boundary() {
-        const Place place = more() ? tokens_[next_].place : end_;
+        const Place place = this->place();
         static constexpr Cage::Boundary kinds[] = {Cage::Boundary::none, Cage::Boundary::edge_and_corner, Cage::Boundary::edge_only};
         const int n = integer("0, 1 or 2");
         if (n < 0 || n > 2) fail(place, std::to_string(n), "0 (none), 1 (edge and corner) or 2 (edge only)");
@@ -261,7 +182,7 @@ private:
     // What could only be known once everything was read.
     void finish() const {
         const int vertices = static_cast<int>(cage_.positions.size()), faces = static_cast<int>(cage_.faces.size());
-        const Place end{std::max(line_, 1), 1};
+        const Place end{std::max(line(), 1), 1};
         if (vertices == 0) fail(end, "the end of the file without a vertex", "v statements");
         if (last_.index >= vertices)
             fail(last_.place, "the vertex index " + std::to_string(last_.index + 1), "1 to " + std::to_string(vertices));
@@ -287,13 +208,7 @@ private:
         }
     }
 
-    const std::string& text_;
-    const std::string& path_;
     Cage cage_;
-    int line_ = 0;
-    std::vector<Token> tokens_;  // of this line, the keyword first
-    std::size_t next_ = 1;
-    Place end_;                  // of this line
     Index last_;                 // the largest vertex that a face named before it was read
     std::vector<Index> vertices_, holes_;
     std::vector<Place> crease_places_;

@@ -3,6 +3,7 @@
 #include "patch_model.h"
 #include "patches/bbg.h"
 #include "patches/cross_data.h"
+#include "patches/edge_series.h"
 #include "scalar/cone.h"
 
 namespace isoparm {
@@ -32,7 +33,28 @@ struct BbgC1 {
         const auto weight = [&](const auto& x, const auto& y, const auto& z) { return square(x) * (3.0 - 2.0 * x + 6.0 * y * z); };
         return weight(u, v, w) * P(0) + weight(v, w, u) * P(1) + weight(w, u, v) * P(2);
     }
+    std::vector<Polynomial> beside(int e) const;
 };
+
+/// The sum beside edge e; its cones are a^2 b / (a + b).
+std::vector<Polynomial> BbgC1::beside(int e) const {
+    const EdgeFrame f;
+    Series b[3];
+    b[e] = f.U, b[(e + 1) % 3] = f.V, b[(e + 2) % 3] = f.W;
+    const auto ratio = [&](int i, int j) {
+        if (i == e) return f.U * f.U;
+        return j == e ? f.U * b[i] - f.U * f.U : b[i] * b[i] * b[j] * f.inverse_r;
+    };
+    Series3 sum;
+    for (int k = 0; k < 3; ++k) {
+        const int y = (k + 1) % 3, z = (k + 2) % 3;
+        const Polynomial3 on = form_of(E[y]), q = form_of(Q[k]), low = form_of(G2[k]), high = form_of(G3[k]);
+        if (!exists(on) || !exists(q) || !exists(low) || !exists(high)) return {};
+        const Series weight = b[k] * b[k] * (Series(3) - Series(2) * b[k] + Series(6) * b[y] * b[z]);
+        sum += weight * (at(on, b[k]) + b[y] * at(q, b[k]) + (ratio(y, z) * at(high, b[k]) - ratio(z, y) * at(low, b[k])));
+    }
+    return EdgeForm(sum).list({0, 1});
+}
 
 }  // namespace
 
@@ -49,7 +71,9 @@ Patch make_bbg_c1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>&
         G2.push_back(linear_combination({1, 0.5, -1, 1}, {difference(d.D[i]), difference(d.slope[i]), of_Q[0], of_Q[1]}));
         G3.push_back(linear_combination({-1, 0.5, -1, 1}, {difference(reversed(d.D[j])), difference(reversed(d.slope[j])), of_Q[0], of_Q[1]}));
     }
-    return make_patch(BbgC1{d.E, {Q[0], Q[1], Q[2]}, {G2[0], G2[1], G2[2]}, {G3[0], G3[1], G3[2]}, part});
+    const BbgC1 formula{d.E, {Q[0], Q[1], Q[2]}, {G2[0], G2[1], G2[2]}, {G3[0], G3[1], G3[2]}, part};
+    if (part != TrianglePart::sum) return make_patch(formula);
+    return with_triangle_forms(make_patch(formula), [formula](int edge, std::size_t part) { return part == 0 ? formula.beside(edge) : std::vector<Polynomial>{}; });
 }
 
 }  // namespace isoparm

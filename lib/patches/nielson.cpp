@@ -4,6 +4,7 @@
 #include "patch_model.h"
 #include "patches/basis.h"
 #include "patches/cross_data.h"
+#include "patches/edge_series.h"
 #include "scalar/cone.h"
 
 namespace isoparm {
@@ -37,6 +38,9 @@ struct Arrival {
 struct RayC1 {
     std::array<Curve, 3> E, slope, D;
     std::array<Point, 3> V;
+    std::vector<Interval> parts(int e) const { return parts_of({&E[e], &slope[e], &D[e]}); }
+    std::optional<EdgeForm> beside(int e, const EdgeFrame& f) const;
+    Polynomial3 along(int k, bool last, const Polynomial& r) const;
     template <class X, class Y, class Z> auto operator()(int k, const X& x, const Y& y, const Z& z) const {
         const Point along_y = slope[(k + 2) % 3](0), along_z = -slope[(k + 1) % 3](1);
         return V[k] + square(x) * (y * along_y + z * along_z) + (cone(H2{}, Arrival{slope[k], D[k]}, z, y) + cone(H3{}, Chord{E[k], V[k]}, z, y));
@@ -69,6 +73,9 @@ struct Constant {
 struct RayG1 {
     std::array<Curve, 3> E, N;
     std::array<Point, 3> V, at_vertex;
+    std::vector<Interval> parts(int e) const { return parts_of({&E[e], &N[e]}); }
+    std::optional<EdgeForm> beside(int e, const EdgeFrame& f) const;
+    Polynomial3 along(int k, bool last, const Polynomial& r) const;
     template <class X, class Y, class Z> auto operator()(int k, const X& x, const Y& y, const Z& z) const {
         (void)x;
         const Chord chord{E[k], V[k]};
@@ -138,6 +145,7 @@ template <class Ray> struct Nielson {
     TrianglePart part;
     double tolerance;  // within which derivatives at a vertex agree
 
+    std::vector<Polynomial> beside(int e, std::size_t n) const;
     template <class U, class V, class W> auto operator()(const U& u, const V& v, const W& w) const {
         using R = decltype(turned(0, ray, u, v, w));
         if (part != TrianglePart::sum) return turned(vertex_of(part), ray, u, v, w);
@@ -196,18 +204,111 @@ template <class Ray> struct Nielson {
     }
 };
 
+// ---- beside the edges ------------------------------------------------------------------------------------------------------------------
+Vec3<Interval> value_at(const Curve& c, double t) {
+    Vec3<Interval> x;
+    c.taylor(Interval(t), 0, &x);
+    return x;
+}
+Polynomial3 constants(const Vec3<Interval>& x) { return {Polynomial(x.x), Polynomial(x.y), Polynomial(x.z)}; }
+Polynomial3 constants(const Point& x) { return {Polynomial(x.x), Polynomial(x.y), Polynomial(x.z)}; }
+/// Of x, normal to n.
+Vec3<Interval> projected(const Vec3<Interval>& x, const Vec3<Interval>& n) { return x - (dot(n, x) / dot(n, n)) * n; }
+
+/// The interpolant along the rays of vertex e itself.
+std::optional<EdgeForm> RayC1::beside(int e, const EdgeFrame& f) const {
+    const Polynomial3 on = form_of(E[e], f.over), along = form_of(slope[e], f.over), across = form_of(D[e], f.over);
+    if (!exists(on) || !exists(along) || !exists(across)) return {};
+    const auto from_vertex = [](const Point& p) { return constant(p); };
+    const Series3 tangents = f.V * from_vertex(slope[(e + 2) % 3](0)) + f.W * from_vertex(-slope[(e + 1) % 3](1));
+    const Series3 arrival = (f.ratio - Series(0.5)) * at(along, f.ratio, f.over) - at(across, f.ratio, f.over), chord = at(on, f.ratio, f.over) - constant(V[e]);
+    return EdgeForm(constant(V[e]) + f.U * f.U * tangents + H2{}(f.r) * arrival + H3{}(f.r) * chord);
+}
+/// That along the rays of vertex k, on the ray that is the edge to the next vertex, or to the one after it (`last`); r is 0 at k.
+Polynomial3 RayC1::along(int k, bool last, const Polynomial& r) const {
+    const Polynomial from = Polynomial(1) - r;
+    const double end = last ? 1 : 0;
+    const Polynomial3 tangent = constants(last ? -slope[(k + 1) % 3](1) : slope[(k + 2) % 3](0));
+    const Vec3<Interval> arrival = Interval(end - 0.5) * value_at(slope[k], end) - value_at(D[k], end), chord = value_at(E[k], end) - Vec3<Interval>(V[k]);
+    return constants(V[k]) + from * from * r * tangent + H2{}(r) * constants(arrival) + H3{}(r) * constants(chord);
+}
+
+/// With d the chord, n the normal and q = n.d / n.n, series in x, and H2(1 - x) = -x + 2 x^2: the term H2 (d - q n), whose quotients are
+///     q0 = a0 / b0,  q1 = (a1 b0 - a0 b1) / b0^2,    a = n.d, b = n.n.
+std::optional<EdgeForm> RayG1::beside(int e, const EdgeFrame& f) const {
+    const Polynomial3 on = form_of(E[e], f.over), normal = form_of(N[e], f.over);
+    if (!exists(on) || !exists(normal)) return {};
+    const Series3 d = at(on, f.ratio, f.over) - constant(V[e]), n = at(normal, f.ratio, f.over);
+    const Vec3<Interval> at_end(at_vertex[e]);
+    const Series3 first = d - (dot(constant(at_end), d) * Series(Polynomial(Interval(1) / dot(at_end, at_end)))) * constant(at_end);
+    EdgeForm form(constant(V[e]) + H1{}(f.r) * first + H2{}(f.r) * d + H3{}(f.r) * d);
+    const Series a = dot(n, d), b = dot(n, n);
+    const Polynomial &b0 = b.c[0], bb = b0 * b0, q1 = a.c[1] * b0 - a.c[0] * b.c[1];
+    for (int axis = 0; axis < 3; ++axis) {
+        const Polynomial &n0 = n[axis].c[0], &n1 = n[axis].c[1];
+        form.across[axis] = form.across[axis] * b0 + a.c[0] * n0;
+        form.second[axis] = form.second[axis] * bb + q1 * n0 + a.c[0] * b0 * (n1 - Polynomial(2) * n0);
+    }
+    form.under[1] = b0, form.under[2] = bb;
+    return form;
+}
+Polynomial3 RayG1::along(int k, bool last, const Polynomial& r) const {
+    const double end = last ? 1 : 0;
+    const Vec3<Interval> chord = value_at(E[k], end) - Vec3<Interval>(V[k]);
+    return constants(V[k]) + H1{}(r) * constants(projected(chord, Vec3<Interval>(at_vertex[k]))) + H2{}(r) * constants(projected(chord, value_at(N[k], end))) + H3{}(r) * constants(chord);
+}
+
+/// By a polynomial whose highest coefficient is 1: the quotient; `of` keeps the rest.
+Polynomial divided(Polynomial& of, const Polynomial& by, const Polynomial& variable) {
+    const auto n = std::size_t(by.degree_u());
+    std::vector<Interval> c(n);
+    for (int k = 0; k <= of.degree_u(); ++k) c.resize(std::max(c.size(), std::size_t(k) + 1)), c[std::size_t(k)] = of.coefficient(k, 0);
+    for (std::size_t k = c.size(); k-- > n;)
+        for (std::size_t i = 0; i < n; ++i) c[k - n + i] = c[k - n + i] - by.coefficient(int(i), 0) * c[k];
+    const auto sum = [&](std::size_t from, std::size_t to) {
+        Polynomial r;
+        for (std::size_t k = to; k-- > from;) r = r * variable + Polynomial(c[k]);
+        return r;
+    };
+    of = sum(0, n);
+    return sum(n, c.size());
+}
+
+/// The weights of the other two are x^2 / (1 - t)^2 and x^2 / t^2, and O(x^3): position and first derivatives are those of the one of vertex e.
+template <class Ray> std::vector<Polynomial> Nielson<Ray>::beside(int e, std::size_t n) const {
+    const auto parts = ray.parts(e);
+    if (n >= parts.size()) return {};
+    const EdgeFrame f{parts[n]};
+    if (part != TrianglePart::sum && vertex_of(part) != e) return {};
+    std::optional<EdgeForm> form = ray.beside(e, f);
+    if (!form) return {};
+    if (part != TrianglePart::sum) return form->list(f.over);
+    const Polynomial tt = f.t * f.t, rr = f.rest * f.rest;
+    form->extra = tt * (ray.along((e + 1) % 3, false, f.t) - form->value) + rr * (ray.along((e + 2) % 3, true, f.rest) - form->value);
+    form->under[3] = tt * rr;
+    // What agrees at the vertices has those zeros too; what is left of it is rounding.
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!form->extra[axis].exists()) return {};
+        form->second[axis] = form->second[axis] + divided(form->extra[axis], form->under[3], f.t - Polynomial(mid(f.over))) * form->under[2];
+    }
+    return form->list(f.over);
+}
+template <class Ray> Patch with_forms(const Nielson<Ray>& formula) {
+    return with_triangle_forms(make_patch(formula), [formula](int edge, std::size_t n) { return formula.beside(edge, n); });
+}
+
 }  // namespace
 
 Patch make_nielson_c1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& cross, TrianglePart part) {
     const CrossData d(edges, cross);
     double tangents = d.size;
     for (const auto& s : d.slope) tangents = std::max({tangents, length(s(0)), length(s(1))});
-    return make_patch(Nielson<RayC1>{{d.E, d.slope, d.D, d.V}, part, 10 * compatibility_tolerance * tangents});
+    return with_forms(Nielson<RayC1>{{d.E, d.slope, d.D, d.V}, part, 10 * compatibility_tolerance * tangents});
 }
 
 Patch make_nielson_g1(const std::array<Curve, 3>& edges, const std::array<Curve, 3>& normals, TrianglePart part) {
     const NormalData d(edges, normals);
-    return make_patch(Nielson<RayG1>{{d.E, d.N, d.V, d.at_vertex}, part, 10 * compatibility_tolerance * d.size});
+    return with_forms(Nielson<RayG1>{{d.E, d.N, d.V, d.at_vertex}, part, 10 * compatibility_tolerance * d.size});
 }
 
 }  // namespace isoparm

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "patch_model.h"
+#include "patches/edge_series.h"
 #include "patches/triangle_edges.h"
 #include "scalar/cone.h"
 
@@ -120,7 +121,51 @@ struct SideVertex {
             default: return Sum(cone(H, E[1], u, w) + cone(H, E[2], v, u) + cone(H, E[0], w, v) - (H(u) * A + H(v) * B + H(w) * C));
         }
     }
+    std::vector<Polynomial> beside(int e, std::size_t n) const;
 };
+
+/// The whole surface beside part n of edge e, for a polynomial H = h_1 r + h_2 r^2 + ... With the cones over a / r, r = a + b, of the other two edges, which are run from (a = U) or to (b = U) the vertex
+/// opposite: r^i (g0 + g1 U/r + g2 U^2/r^2), g0, g1, g2 the Taylor coefficients of the edge (or its bulge) at that end, away from it. Of these U^2/r alone is no polynomial.
+std::vector<Polynomial> SideVertex::beside(int e, std::size_t n) const {
+    const auto parts = parts_of({&E[e]});
+    if (n >= parts.size()) return {};
+    const EdgeFrame f{parts[n]};
+    const Point V[3] = {A, B, C};
+    const bool bulges = form == SideVertexForm::delta;
+    const Polynomial h = H(Polynomial::variable_u({-1, 1}));  // coefficients of the powers of r
+    const Polynomial3 on = form_of(E[e], f.over);
+    if (!exists(on) || !h.exists() || !RationalCone::zero(h.coefficient(0, 0))) return {};
+    Series b[3];
+    b[e] = f.U, b[(e + 1) % 3] = f.V, b[(e + 2) % 3] = f.W;
+    const auto of = [&](const Series& r) {
+        Series sum;
+        for (int i = h.degree_u(); i >= 1; --i) sum = (sum + Series(h.coefficient(i, 0))) * r;
+        return sum;
+    };
+    Series3 curve = at(on, f.ratio, f.over), sum;
+    if (bulges) curve = curve - ((Series(1) - f.ratio) * constant(V[(e + 1) % 3]) + f.ratio * constant(V[(e + 2) % 3]));
+    sum = of(f.r) * curve;
+    for (int k = 0; k < 3; ++k) sum = bulges ? sum + b[k] * constant(V[k]) : sum - of(b[k]) * constant(V[k]);
+    Polynomial3 extra;
+    for (const int step : {1, 2}) {  // the edge that begins in e + 2 and ends in e, whose cone has a = U; the one from e to e + 1, b = U
+        const int k = (e + step) % 3;
+        Vec3<Interval> g[3];
+        E[k].taylor(Interval(step == 1 ? 0.0 : 1.0), 2, g);
+        if (step == 2) g[1] = -g[1];
+        const Point &from = V[(e + (step == 1 ? 2 : 1)) % 3], &to = V[e];
+        if (bulges) g[0] = g[0] - Vec3<Interval>(from), g[1] = g[1] - (Vec3<Interval>(to) - Vec3<Interval>(from));
+        const Series r = f.U + b[(e + (step == 1 ? 2 : 1)) % 3];
+        for (int i = 1; i <= h.degree_u(); ++i) {
+            const Series c(h.coefficient(i, 0));
+            sum += c * power(r, i) * constant(g[0]) + c * f.U * power(r, i - 1) * constant(g[1]);
+            if (i >= 2) sum += c * f.U * f.U * power(r, i - 2) * constant(g[2]);
+            else if (!RationalCone::zero(h.coefficient(1, 0))) extra += (c.c[0] * (step == 1 ? f.rest : f.t)) * Polynomial3{Polynomial(g[2].x), Polynomial(g[2].y), Polynomial(g[2].z)};
+        }
+    }
+    EdgeForm result(sum);
+    if (!RationalCone::zero(h.coefficient(1, 0))) result.extra = extra, result.under[3] = f.t * f.rest;
+    return result.list(f.over);
+}
 
 }  // namespace
 
@@ -134,7 +179,9 @@ Patch make_side_vertex(const std::array<Curve, 3>& edges, const Function& H, Sid
     H.taylor(Interval(0, 1e-300), 0, &near);
     if (const double gap = mag(near); !(gap <= 1e-12)) throw IncompatibleError("H(t) -> 0 for t -> 0", gap, 1e-12);
     if (const double gap = std::abs(H(1) - 1); !(gap <= 1e-12)) throw IncompatibleError("H(1) = 1", gap, 1e-12);
-    return make_patch(SideVertex{t.E, t.V[0], t.V[1], t.V[2], H, form, part});
+    const SideVertex formula{t.E, t.V[0], t.V[1], t.V[2], H, form, part};
+    if (part != SideVertexPart::sum) return make_patch(formula);
+    return with_triangle_forms(make_patch(formula), [formula](int edge, std::size_t part) { return formula.beside(edge, part); });
 }
 
 }  // namespace isoparm

@@ -56,7 +56,7 @@ Interval TaylorModel::at(double d) const {
 
 TaylorModel TaylorModel::restricted(double middle, double half) const {
     TaylorModel r = *this;
-    for (int k = 0; k < degree_; ++k)  // repeated synthetic division
+    for (int k = 0; k < (half == 0 ? std::min(degree_, 1) : degree_); ++k)  // repeated synthetic division
         for (int i = degree_ - 1; i >= k; --i) r.c_[std::size_t(i)] = r.c_[std::size_t(i)] + r.c_[std::size_t(i + 1)] * Interval(middle);
     if (half == 0) {
         r.degree_ = std::min(degree_, 0);
@@ -67,7 +67,15 @@ TaylorModel TaylorModel::restricted(double middle, double half) const {
         r.c_[std::size_t(k)] = r.c_[std::size_t(k)] * scale;
         scale = scale * Interval(half);
     }
+    r.trim();
     return r;
+}
+
+/// Terms that are far below the rounding of the others go to the rest: on short pieces, the higher ones.
+void TaylorModel::trim() {
+    double most = 0;
+    for (int k = 0; k <= degree_; ++k) most = std::max(most, mag(c_[std::size_t(k)]));
+    for (; degree_ > 0 && mag(c_[std::size_t(degree_)]) <= 0x1p-64 * most; --degree_) rest_ = rest_ + c_[std::size_t(degree_)] * power(degree_);
 }
 
 TaylorModel operator+(const TaylorModel& a, const TaylorModel& b) {
@@ -111,6 +119,7 @@ TaylorModel operator*(const TaylorModel& a, const TaylorModel& b) {
     // (p + r)(q + s) = pq + r (q + s) + p s
     if (!a.exact()) r.rest_ = r.rest_ + a.rest_ * b.range();
     if (!b.exact()) r.rest_ = r.rest_ + (a.range() - a.rest_) * b.rest_;  // a.range() - a.rest_ holds the range of p
+    if (!r.exact()) r.trim();
     return r;
 }
 

@@ -43,6 +43,7 @@ public:
 
 private:
     void set(int k, const Interval& c);
+    void trim();
     std::array<Interval, order + 1> c_;
     int degree_ = -1;
     Interval rest_{0};

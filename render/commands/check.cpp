@@ -55,7 +55,7 @@ struct Report {
     ContinuityOptions options;
     Continuity continuity;
     std::vector<std::string> failed, unproved;  // sentences
-    double allowed(const Promise& p) const { return std::max(options.tolerance, p.allowed); }
+    double allowed(const Promise& p) const { return p.derivative == kNormal ? options.angle : std::max(options.tolerance, p.allowed); }
     void judge(const std::string& what, double lower, double upper) { judge(what, lower, upper, options.tolerance); }
     void judge(const std::string& what, double lower, double upper, double tolerance) {
         if (upper <= tolerance) return;
@@ -205,7 +205,7 @@ void print_surface(std::ostream& out, const Report& r, const Examined& e) {
     }
     for (std::size_t k = 0; k < e.residuals.size(); ++k) {
         const JumpBound& b = e.residuals[k];
-        out << "  " << e.data.promises[k].what << ", proved within " << brief(b.inside, true) << (b.singular.empty() ? "" : " (but for 1/4096 of the edge at singular ends)") << (b.inside <= r.allowed(e.data.promises[k]) ? "" : " at worst, at least " + brief(b.lower, false)) << "\n";
+        out << "  " << e.data.promises[k].what << ", proved within " << brief(b.inside, true) << (e.data.promises[k].derivative == kNormal ? " degrees" : "") << (b.singular.empty() ? "" : " (but for 1/4096 of the edge at singular ends)") << (b.inside <= r.allowed(e.data.promises[k]) ? "" : " at worst, at least " + brief(b.lower, false)) << "\n";
     }
 }
 
