@@ -282,6 +282,55 @@ void ExactPatch::settle(const Leaf& leaf, const RayPlanes& ray, double farthest,
     found.root[found.count++] = root;
 }
 
+// ---- rays that surely meet leaves -----------------------------------------------------------------------------------
+/// As proved_error(), where there is no proved error of frames.
+double ExactPatch::enclosed_error(int i, const RayPacket& rays, const CertainPacket& p) const {
+    const RayPlanes ray = rays.at(i);
+    const Vec3<Interval> s = patch_.enclose_point(p.u[i], p.v[i]);
+    const Point to = middle(s) - ray.origin;
+    const auto vector = [&](int k) { return Point{p.leaf[k][i], p.leaf[k + 1][i], p.leaf[k + 2][i]}; };
+    const Point a = vector(p.Ax), b = vector(p.Bx);
+    const double a1 = dot(ray.n1, a), a2 = dot(ray.n2, a), b1 = dot(ray.n1, b), b2 = dot(ray.n2, b), det = std::fabs(a1 * b2 - a2 * b1);
+    const double size_a = std::hypot(a1, a2), size_b = std::hypot(b1, b2), q = (size_b * p.leaf[p.turn_u][i] + size_a * p.leaf[p.turn_v][i]) / det;
+    const double rounding = 1e-15 * (std::fabs(p.distance[i]) + p.leaf[p.sizes][i] + length(ray.origin));
+    const double off = std::hypot(dot(ray.n1, to), dot(ray.n2, to)) + radius(s) + rounding;
+    return off / (det * (1 - q)) * (1 + 1e-9) * (size_b * p.leaf[p.far_a][i] + size_a * p.leaf[p.far_b][i]);
+}
+
+ExactPatch::Lanes ExactPatch::certify(const std::uint32_t* leaf, const RayPacket& rays, const float* x, const float* y, Lanes active, Root* root) const {
+    Lanes proved = 0;
+    CertainPacket p;
+    while (active) {  // lanes of one cell
+        const int first = __builtin_ctz(active);
+        const std::uint32_t cell = leaves_[leaf[first]].cell;
+        Lanes some = 0;
+        for (int i = 0; i < packet; ++i) {
+            const bool in = (active >> i & 1) && leaves_[leaf[i]].cell == cell;
+            const int from = in ? i : first;
+            p.put(i, leaves_[leaf[from]]), p.x[i] = x[from], p.y[i] = y[from];
+            some |= Lanes(in) << i;
+        }
+        active &= ~some;
+        kernel_.parameters(p);
+        double* rows[9];
+        for (int i = 0; i < 9; ++i) rows[i] = p.frame[i];
+        if (cells_) cells_->frames_in(cell, chosen_isa(), packet, p.u, p.v, rows);
+        else {
+            const auto three = [&](int of) { return std::array<std::span<double>, 3>{{{rows[of], packet}, {rows[of + 1], packet}, {rows[of + 2], packet}}}; };
+            patch_.frames({p.u, packet}, {p.v, packet}, {three(0), three(3), three(6)});
+        }
+        kernel_.certify(rays, cells_ ? cells_->error() : FrameError{}, p);
+        for (int i = 0; i < packet; ++i) {
+            if (!(some >> i & 1) || !std::isfinite(p.error[i]) || (patch_.domain() == Domain::triangle && p.u[i] + p.v[i] > 1)) continue;
+            const double error = cells_ ? p.error[i] : enclosed_error(i, rays, p);
+            if (!(error < kSharp * size_)) continue;
+            root[i] = {p.distance[i], p.u[i], p.v[i], error};
+            proved |= Lanes(1) << i;
+        }
+    }
+    return proved;
+}
+
 void ExactPatch::meet(std::size_t which, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const {
     for (int i = 0; i < n; ++i) found[i].count = 0, found[i].undecided = false;
     const Leaf& leaf = leaves_[which];
