@@ -313,8 +313,9 @@ void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
     s.note(open, static_cast<std::uint64_t>(n));
     for (int i = 0; i < n; ++i) {
         const std::uint32_t geometry = r.hit.geomID[i];
-        if (geometry == RTC_INVALID_GEOMETRY_ID) hits[i] = Hit{};
-        else if (s.patches && s.geometries[geometry].patch) hits[i].distance += start[i];
+        if (geometry == RTC_INVALID_GEOMETRY_ID) {
+            if (!s.patches) hits[i] = Hit{};
+        } else if (s.patches && s.geometries[geometry].patch) hits[i].distance += start[i];
         else hits[i] = {start[i] + static_cast<double>(r.ray.tfar[i]), geometry, r.hit.primID[i], r.hit.u[i], r.hit.v[i], {r.hit.Ng_x[i], r.hit.Ng_y[i], r.hit.Ng_z[i]}, 0};
     }
 }

@@ -87,7 +87,8 @@ private:
     void settle(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const;
 
     Patch patch_;
-    const PolynomialCells* cells_;  // of the patch, or nullptr
+    const PolynomialCells own_cells_;  // where the patch has none of its own
+    const PolynomialCells* cells_;     // of the patch, or nullptr
     const ExactKernel& kernel_;
     double size_, slack_;
     std::deque<Leaf> leaves_;
