@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "embree_scene.h"
+#include "exact_quick.h"
 
 namespace isoparm {
 
@@ -54,8 +55,20 @@ struct Geometry {
     float opacity = 1;
     bool solid = false;  // a tube or ball: counts once however often a ray passes through its skin
     const ExactPatch* patch = nullptr;  // rays meet it itself; mesh is then its group
+    const QuickPatch* quick = nullptr;  // of it; nullptr where float32 is of no use
     const Point* centre = nullptr;
     const double* radius = nullptr;  // of the scene, once it is complete
+};
+
+/// Of each ray, what was surely met, as far as float32 tells: the hit that ends first.
+struct QuickBest {
+    std::uint32_t some = 0;  // lanes that have one
+    const Geometry* geometry[EmbreeScene::packet];
+    std::uint32_t leaf[EmbreeScene::packet];
+    float x[EmbreeScene::packet], y[EmbreeScene::packet], near[EmbreeScene::packet], far[EmbreeScene::packet];
+    float other[EmbreeScene::packet];  // where the nearest other one begins
+
+    void put(int lane, const Geometry& from, std::uint32_t of_leaf, const QuickHits& hits);
 };
 
 /// What queries tell the callbacks of patches, which compute in double.
@@ -65,7 +78,11 @@ struct PatchRays {
     Hit* nearest = nullptr;               // of patches
     bool* undecided = nullptr;
     std::vector<Hit>* layers = nullptr;   // of a single ray: where hits of what lets light through go; otherwise they count as any other
+    const QuickRays* quick = nullptr;     // of packets, where float32 may tell
+    QuickBest* best = nullptr;
 };
+/// Proves what rays in `active` surely meet, and leaves the nearest hit of each in rays.nearest; the lanes that must be traced again, in double.
+std::uint32_t settle(PatchRays& rays, std::uint32_t active);
 
 // ---- Embree 3 and 4 ask the same questions with different words ---------------------------------------------------
 #if RTC_VERSION_MAJOR >= 4

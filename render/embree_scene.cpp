@@ -47,6 +47,7 @@ struct EmbreeScene::State {
     bool patches = false;  // rays meet some patch itself
     mutable std::atomic<std::uint64_t> rays{0}, undecided{0};
     std::deque<Geometry> geometries;        // Embree keeps pointers to them
+    std::deque<QuickPatch> quick;
     std::deque<std::vector<float>> shared;  // vertices that Embree reads in place
 
     ~State() {
@@ -98,6 +99,38 @@ struct EmbreeScene::State {
         kernel.enter(rays, active, packet, centre, radius, start, {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y, r.dir_z, r.tfar}, patches ? &planes : nullptr);
         if (patches) kernel.planes(packet, planes);
         for (unsigned i = 0; i < packet; ++i) r.tnear[i] = 0, r.time[i] = 0, r.mask[i] = ~0u, r.id[i] = i, r.flags[i] = 0;
+    }
+    void set_quick(const RTCRay16& r, const RayPacket& planes, QuickRays& quick, PatchRays& to_patches) const {
+        quick.origin[0] = r.org_x, quick.origin[1] = r.org_y, quick.origin[2] = r.org_z;
+        quick.direction[0] = r.dir_x, quick.direction[1] = r.dir_y, quick.direction[2] = r.dir_z;
+        quick.set_planes(planes);
+        to_patches.quick = &quick;
+    }
+    /// Lanes `again` of a packet, in double.
+    void trace_again(const Ray* rays, int n, std::uint32_t again, Query& query, RTCRayHit16& r, PatchRays& to_patches) const {
+        alignas(64) int valid[packet];
+        alignas(64) RTCRayHit16 fresh;
+        double start[packet];
+        RayPacket planes;
+        enter(rays, (2u << (n - 1)) - 1, fresh.ray, start, planes);
+        for (int i = 0; i < packet; ++i) {
+            valid[i] = again >> i & 1 ? -1 : 0;
+            fresh.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+            fresh.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+            if (valid[i]) to_patches.nearest[i] = Hit{};
+        }
+        to_patches.quick = nullptr;
+        {
+            const FlushSubnormals flush;
+            intersect_16(valid, scene, query, &fresh);
+        }
+        rethrow(query);
+        for (int i = 0; i < packet; ++i)
+            if (valid[i]) {
+                r.ray.tfar[i] = fresh.ray.tfar[i], r.hit.geomID[i] = fresh.hit.geomID[i], r.hit.primID[i] = fresh.hit.primID[i];
+                r.hit.u[i] = fresh.hit.u[i], r.hit.v[i] = fresh.hit.v[i];
+                r.hit.Ng_x[i] = fresh.hit.Ng_x[i], r.hit.Ng_y[i] = fresh.hit.Ng_y[i], r.hit.Ng_z[i] = fresh.hit.Ng_z[i];
+            }
     }
     /// Adds to count().
     void note(const bool* open, std::uint64_t n) const {
@@ -192,7 +225,7 @@ std::uint32_t EmbreeScene::add_patch(const ExactPatch& patch, std::uint32_t grou
     s.patches = true;
     s.translucent = s.translucent || opacity < 1;
     RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_USER);
-    Geometry& data = s.geometries.emplace_back(Geometry{0, group, static_cast<float>(opacity), false, &patch, &s.centre, &s.radius});
+    Geometry& data = s.geometries.emplace_back(Geometry{0, group, static_cast<float>(opacity), false, &patch, &s.quick.emplace_back(patch, s.centre), &s.centre, &s.radius});
     rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(patch.leaves()));
     rtcSetGeometryUserData(g, &data);
     set_patch_callbacks(g);
@@ -262,7 +295,10 @@ void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
     }
     if (s.patches) std::fill_n(hits, n, Hit{});
     bool open[packet] = {};
+    QuickRays quick;
+    QuickBest best;
     PatchRays to_patches{&planes, hits, open};
+    if (s.patches) s.set_quick(r.ray, planes, quick, to_patches), to_patches.best = &best;
     Query query(true);
     if (s.patches) query.patches = &to_patches;
     {
@@ -270,11 +306,16 @@ void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
         intersect_16(valid, s.scene, query, &r);
     }
     rethrow(query);
+    std::uint32_t patch_first = 0;  // lanes that meet a patch first
+    for (unsigned i = 0; i < packet; ++i)
+        if (best.some >> i & 1 && s.geometries[r.hit.geomID[i]].patch) patch_first |= 1u << i;
+    if (const std::uint32_t again = patch_first ? settle(to_patches, patch_first) : 0) s.trace_again(rays, n, again, query, r, to_patches);
     s.note(open, static_cast<std::uint64_t>(n));
     for (int i = 0; i < n; ++i) {
         const std::uint32_t geometry = r.hit.geomID[i];
-        if (geometry == RTC_INVALID_GEOMETRY_ID) hits[i] = Hit{};
-        else if (s.patches && s.geometries[geometry].patch) hits[i].distance += start[i];
+        if (geometry == RTC_INVALID_GEOMETRY_ID) {
+            if (!s.patches) hits[i] = Hit{};
+        } else if (s.patches && s.geometries[geometry].patch) hits[i].distance += start[i];
         else hits[i] = {start[i] + static_cast<double>(r.ray.tfar[i]), geometry, r.hit.primID[i], r.hit.u[i], r.hit.v[i], {r.hit.Ng_x[i], r.hit.Ng_y[i], r.hit.Ng_z[i]}, 0};
     }
 }
@@ -351,6 +392,8 @@ void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, do
     Query query;
     bool open[packet] = {};
     PatchRays to_patches{&planes, nullptr, open};
+    QuickRays quick;
+    if (s.patches) s.set_quick(r, planes, quick, to_patches);
     if (s.patches) query.patches = &to_patches;
     occluded_16(valid, s.scene, query, &r);
     rethrow(query);

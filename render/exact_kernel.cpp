@@ -35,4 +35,10 @@ void RayPacket::put(int lane, const RayPlanes& ray) {
         origin[k][lane] = ray.origin[k], direction[k][lane] = ray.direction[k], n1[k][lane] = ray.n1[k], n2[k][lane] = ray.n2[k];
 }
 
+void CertainPacket::put(int lane, const LeafMap& l) {
+    const double of[numbers] = {l.u, l.v, l.hu, l.hv, l.a.x, l.a.y, l.a.z, l.b.x, l.b.y, l.b.z, l.size_a + l.turn_u, l.size_b + l.turn_v, l.turn_u, l.turn_v,
+                                l.uu, l.uv, l.vv, l.size_s + l.size_a + l.size_b + l.bend};
+    for (int k = 0; k < numbers; ++k) leaf[k][lane] = of[k];
+}
+
 }  // namespace isoparm

@@ -64,6 +64,17 @@ struct NewtonPacket {
     double frame[9][RayPacket::lanes];                  // S, S_u, S_v at (u,v)
 };
 
+/// Rays that surely meet leaves, each its own, side by side: about where, in; where and how well that is proved, out.
+struct CertainPacket {
+    enum { U, V, Hu, Hv, Ax, Ay, Az, Bx, By, Bz, far_a, far_b, turn_u, turn_v, uu, uv, vv, sizes, numbers };  // of LeafMap; far_a = size_a + turn_u, ...
+    alignas(64) double leaf[numbers][RayPacket::lanes];
+    double x[RayPacket::lanes], y[RayPacket::lanes], u[RayPacket::lanes], v[RayPacket::lanes];
+    double frame[9][RayPacket::lanes];  // S, S_u, S_v at (u,v), as they were found
+    double distance[RayPacket::lanes], error[RayPacket::lanes];  // infinite: not proved
+
+    void put(int lane, const LeafMap& map);
+};
+
 /// Where float32 numbers of rays go: lanes of each.
 struct FloatRays {
     float *org_x, *org_y, *org_z, *dir_x, *dir_y, *dir_z, *tfar;
@@ -85,6 +96,10 @@ struct ExactKernel {
     void (*begin)(const LeafMap& leaf, const RayPacket& rays, const AimPacket& aim, int n, NewtonPacket& out);
     /// One step with the frames, and where what is left after it is proved to be nothing, with S of where it leads; `newton` or the map that is proved to contract. Is any lane still active?
     bool (*step)(const LeafMap& leaf, const RayPacket& rays, const AimPacket& aim, bool newton, int n, NewtonPacket& p);
+    /// Sets u and v.
+    void (*parameters)(CertainPacket& p);
+    /// One step of Newton's method, which moves u and v, and its proof. `off`: of the frames.
+    void (*certify)(const RayPacket& rays, const FrameError& off, CertainPacket& p);
 };
 const ExactKernel& exact_kernel(Isa isa);
 

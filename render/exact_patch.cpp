@@ -12,7 +12,7 @@ namespace isoparm {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kFlat = 0.4;          // |I - Y J| of leaves, seen face on
+constexpr double kFlat = 0.25;         // |I - Y J| of leaves, seen face on
 constexpr double kLargest = 1.0 / 8;   // half a leaf's side, in sizes of the scene
 constexpr double kSmallest = 5e-4;     // leaves below this are not cut any further before there is a ray
 constexpr int kDepth = 12;             // bisections of the domain to leaves
@@ -37,6 +37,18 @@ template <class Jets> Vec3<Interval> coefficient(const Jets& j, int k) { return 
 Vec2 nearest_parameters(const LeafMap& leaf, double x, double y) {
     const double u = std::clamp(leaf.u + x * leaf.hu, leaf.box.u.lo, leaf.box.u.hi), v = std::clamp(leaf.v + y * leaf.hv, leaf.box.v.lo, leaf.box.v.hi);
     return {u, leaf.slanted && u + v > 1 ? 1 - u : v};
+}
+
+/// Of patches that are moved, and know their polynomials but not how to run them.
+PolynomialCells cells_of(const Patch& patch) {
+    const auto us = patch.lines_u(), vs = patch.lines_v();
+    std::vector<PolynomialCells::Form> forms;
+    for (std::size_t i = 0; i + 1 < us.size(); ++i)
+        for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
+            forms.push_back(patch.exact_cell(i, j));
+            if (forms.back().size() < 3 || forms.back().size() != forms.front().size()) return {};
+        }
+    return {us, vs, forms};
 }
 
 Interval part_of(const Interval& t, bool upper) { return upper ? Interval(mid(t), t.hi) : Interval(t.lo, mid(t)); }
@@ -131,7 +143,7 @@ void ExactPatch::add_leaves(const Box& box, std::uint32_t cell, int depth) {
 }
 
 ExactPatch::ExactPatch(const Patch& patch, double size)
-    : patch_(patch), cells_(patch_.batch()), kernel_(exact_kernel(chosen_isa())), size_(size), slack_(slack(size)) {
+    : patch_(patch), own_cells_(patch.batch() ? PolynomialCells() : cells_of(patch)), cells_(patch_.batch() ? patch_.batch() : own_cells_.exist() ? &own_cells_ : nullptr), kernel_(exact_kernel(chosen_isa())), size_(size), slack_(slack(size)) {
     const auto us = patch.lines_u(), vs = patch.lines_v();
     std::uint32_t cell = 0;
     for (std::size_t i = 0; i + 1 < us.size(); ++i)
@@ -280,6 +292,61 @@ void ExactPatch::settle(const Leaf& leaf, const RayPlanes& ray, double farthest,
     for (int k = 0; k < found.count; ++k)
         if (std::fabs(found.root[k].distance - root.distance) <= 1e2 * kPoint * size_) return;
     found.root[found.count++] = root;
+}
+
+// ---- rays that surely meet leaves -----------------------------------------------------------------------------------
+/// As proved_error(), where there is no proved error of frames.
+double ExactPatch::enclosed_error(int i, const RayPacket& rays, const CertainPacket& p) const {
+    const RayPlanes ray = rays.at(i);
+    const Vec3<Interval> s = patch_.enclose_point(p.u[i], p.v[i]);
+    const Point to = middle(s) - ray.origin;
+    const auto vector = [&](int k) { return Point{p.leaf[k][i], p.leaf[k + 1][i], p.leaf[k + 2][i]}; };
+    const Point a = vector(p.Ax), b = vector(p.Bx);
+    const double a1 = dot(ray.n1, a), a2 = dot(ray.n2, a), b1 = dot(ray.n1, b), b2 = dot(ray.n2, b), det = std::fabs(a1 * b2 - a2 * b1);
+    const double size_a = std::hypot(a1, a2), size_b = std::hypot(b1, b2), q = (size_b * p.leaf[p.turn_u][i] + size_a * p.leaf[p.turn_v][i]) / det;
+    const double rounding = 1e-15 * (std::fabs(p.distance[i]) + p.leaf[p.sizes][i] + length(ray.origin));
+    const double off = std::hypot(dot(ray.n1, to), dot(ray.n2, to)) + radius(s) + rounding;
+    return off / (det * (1 - q)) * (1 + 1e-9) * (size_b * p.leaf[p.far_a][i] + size_a * p.leaf[p.far_b][i]);
+}
+
+ExactPatch::Lanes ExactPatch::certify(const std::uint32_t* leaf, const RayPacket& rays, const float* x, const float* y, Lanes active, Root* root) const {
+    Lanes proved = 0;
+    CertainPacket p;
+    while (active) {  // lanes of one cell
+        const int first = __builtin_ctz(active);
+        const std::uint32_t cell = leaves_[leaf[first]].cell;
+        Lanes some = 0;
+        for (int i = 0; i < packet; ++i) {
+            const bool in = (active >> i & 1) && leaves_[leaf[i]].cell == cell;
+            const int from = in ? i : first;
+            p.put(i, leaves_[leaf[from]]), p.x[i] = x[from], p.y[i] = y[from];
+            some |= Lanes(in) << i;
+        }
+        active &= ~some;
+        kernel_.parameters(p);
+        double* rows[9];
+        for (int i = 0; i < 9; ++i) rows[i] = p.frame[i];
+        for (int step = 0; step < 3 && some; ++step) {
+            if (cells_) cells_->frames_in(cell, chosen_isa(), packet, p.u, p.v, rows);
+            else {
+                const auto three = [&](int of) { return std::array<std::span<double>, 3>{{{rows[of], packet}, {rows[of + 1], packet}, {rows[of + 2], packet}}}; };
+                patch_.frames({p.u, packet}, {p.v, packet}, {three(0), three(3), three(6)});
+            }
+            kernel_.certify(rays, cells_ ? cells_->error() : FrameError{}, p);
+            for (int i = 0; i < packet; ++i) {
+                if (!(some >> i & 1)) continue;
+                if (!std::isfinite(p.error[i]) || (patch_.domain() == Domain::triangle && p.u[i] + p.v[i] > 1)) some &= ~(Lanes(1) << i);
+                else if (p.error[i] < kSharp * size_) {
+                    const double error = cells_ ? p.error[i] : enclosed_error(i, rays, p);
+                    some &= ~(Lanes(1) << i);
+                    if (!(error < kSharp * size_)) continue;
+                    root[i] = {p.distance[i], p.u[i], p.v[i], error};
+                    proved |= Lanes(1) << i;
+                }
+            }
+        }
+    }
+    return proved;
 }
 
 void ExactPatch::meet(std::size_t which, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const {

@@ -47,11 +47,17 @@ public:
     std::size_t leaves() const { return leaves_.size(); }
     /// Holds the patch over that leaf.
     Bounds box(std::size_t leaf) const { return leaves_[leaf].values; }
+    const LeafMap& map(std::size_t leaf) const { return leaves_[leaf]; }
+    std::uint32_t cell(std::size_t leaf) const { return leaves_[leaf].cell; }
+    const Patch& patch() const { return patch_; }
+    double slack() const { return slack_; }
     /// How many boxes were halved for single rays until now: what takes long.
     std::uint64_t halved() const { return halved_.load(std::memory_order_relaxed); }
     /// Where rays meet a leaf, at distances from 0 to farthest[i]: those of the first n lanes that have a bit in `active`. `farthest` has
     /// numbers for all lanes.
     void meet(std::size_t leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const;
+    /// The roots of rays that surely meet one leaf each, once, in it, about (x,y) of its map; the lanes of those that can be proved so.
+    Lanes certify(const std::uint32_t* leaf, const RayPacket& rays, const float* x, const float* y, Lanes active, Root* root) const;
 
 private:
     struct Leaf : LeafMap {
@@ -75,12 +81,14 @@ private:
     void frames(const Leaf& leaf, int n, NewtonPacket& p) const;
     void solve(const Leaf& leaf, const RayPacket& rays, const double* farthest, const AimPacket& aim, int n, Roots* found) const;
     double proved_error(const Leaf& leaf, const RayPacket& rays, const AimPacket& aim, const NewtonPacket& p, int lane) const;
+    double enclosed_error(int lane, const RayPacket& rays, const CertainPacket& p) const;
     Lanes visit(const Leaf& leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const;
     void search(const Leaf& leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const;
     void settle(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const;
 
     Patch patch_;
-    const PolynomialCells* cells_;  // of the patch, or nullptr
+    const PolynomialCells own_cells_;  // where the patch has none of its own
+    const PolynomialCells* cells_;     // of the patch, or nullptr
     const ExactKernel& kernel_;
     double size_, slack_;
     std::deque<Leaf> leaves_;
