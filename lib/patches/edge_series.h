@@ -57,6 +57,8 @@ inline Series3 at(const Polynomial3& curve, const Series& s, const Interval& ove
         for (int k = curve[axis].degree_u(); k >= 0; --k) r[axis] = r[axis] * from_middle + Series(curve[axis].coefficient(k, 0));
     return r;
 }
+/// The quotient of two polynomials in `variable`, the highest coefficient of `by` being 1; `of` keeps the rest.
+Polynomial divided(Polynomial& of, const Polynomial& by, const Polynomial& variable);
 template <class T> Series3 constant(const Vec3<T>& p) { return {Series(Polynomial(p.x)), Series(Polynomial(p.y)), Series(Polynomial(p.z))}; }
 
 /// The surface beside an edge: value + x across + x^2 (second + extra), each over its own denominator. All but that of `extra` are positive on [0,1]; a denominator of degree 0 is 1.

@@ -258,22 +258,6 @@ Polynomial3 RayG1::along(int k, bool last, const Polynomial& r) const {
     return constants(V[k]) + H1{}(r) * constants(projected(chord, Vec3<Interval>(at_vertex[k]))) + H2{}(r) * constants(projected(chord, value_at(N[k], end))) + H3{}(r) * constants(chord);
 }
 
-/// By a polynomial whose highest coefficient is 1: the quotient; `of` keeps the rest.
-Polynomial divided(Polynomial& of, const Polynomial& by, const Polynomial& variable) {
-    const auto n = std::size_t(by.degree_u());
-    std::vector<Interval> c(n);
-    for (int k = 0; k <= of.degree_u(); ++k) c.resize(std::max(c.size(), std::size_t(k) + 1)), c[std::size_t(k)] = of.coefficient(k, 0);
-    for (std::size_t k = c.size(); k-- > n;)
-        for (std::size_t i = 0; i < n; ++i) c[k - n + i] = c[k - n + i] - by.coefficient(int(i), 0) * c[k];
-    const auto sum = [&](std::size_t from, std::size_t to) {
-        Polynomial r;
-        for (std::size_t k = to; k-- > from;) r = r * variable + Polynomial(c[k]);
-        return r;
-    };
-    of = sum(0, n);
-    return sum(n, c.size());
-}
-
 /// The weights of the other two are x^2 / (1 - t)^2 and x^2 / t^2, and O(x^3): position and first derivatives are those of the one of vertex e.
 template <class Ray> std::vector<Polynomial> Nielson<Ray>::beside(int e, std::size_t n) const {
     const auto parts = ray.parts(e);

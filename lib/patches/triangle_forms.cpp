@@ -19,6 +19,21 @@ private:
 
 }  // namespace
 
+Polynomial divided(Polynomial& of, const Polynomial& by, const Polynomial& variable) {
+    const auto n = std::size_t(by.degree_u());
+    std::vector<Interval> c(n);
+    for (int k = 0; k <= of.degree_u(); ++k) c.resize(std::max(c.size(), std::size_t(k) + 1)), c[std::size_t(k)] = of.coefficient(k, 0);
+    for (std::size_t k = c.size(); k-- > n;)
+        for (std::size_t i = 0; i < n; ++i) c[k - n + i] = c[k - n + i] - by.coefficient(int(i), 0) * c[k];
+    const auto sum = [&](std::size_t from, std::size_t to) {
+        Polynomial r;
+        for (std::size_t k = to; k-- > from;) r = r * variable + Polynomial(c[k]);
+        return r;
+    };
+    of = sum(0, n);
+    return sum(n, c.size());
+}
+
 std::vector<Interval> parts_of(std::initializer_list<const Curve*> curves) {
     std::vector<double> ends{0, 1};
     for (const Curve* c : curves)
