@@ -105,6 +105,7 @@ TEST(Models, OfFormulasHoldTheirDerivatives) {
             caught += most > 0.99;
         }
     EXPECT_GE(made, 11 * 24u);
+    EXPECT_GT(caught, made / 4);  // bounds 1 % smaller
     // Must fail: x^6 about 0 leaves out x^6 alone, and 1 % less than its second derivative is seen to be too little.
     for (const double half : {0.5, 0.125}) {
         const Box box{{-half, half}, {-half, half}};
@@ -113,7 +114,7 @@ TEST(Models, OfFormulasHoldTheirDerivatives) {
         EXPECT_LE(share, 1);
         EXPECT_GT(share, 0.99);
     }
-    std::printf("%zu models of formulas, %zu of them attain their bounds\n", made, caught);
+    std::printf("%zu models of formulas, %zu of them within 1 %% of their bounds\n", made, caught);
 }
 
 TEST(Models, OfFormulasDoNotExistWhereDerivativesDoNot) {
