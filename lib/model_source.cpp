@@ -67,7 +67,7 @@ ModelSource::ModelSource(const Patch& patch, const Box& cell) {
 /// A formula without models costs time wherever one is tried, and where intervals are nearly as sharp they are faster: three small boxes tell.
 void ModelSource::try_formula(const Patch& patch, const Box& cell) {
     int sharper = 0;
-    for (const auto [x, y] : {std::pair{0.25, 0.25}, {0.5, 0.25}, {0.25, 0.5}}) {
+    for (const auto& [x, y] : {std::pair{0.25, 0.25}, {0.5, 0.25}, {0.25, 0.5}}) {
         const auto part = [](const Interval& t, double at) { return Interval(t.lo + at * (t.hi - t.lo), t.lo + (at + kProbe) * (t.hi - t.lo)); };
         const Box box{part(cell.u, x), part(cell.v, y)};
         const PolynomialCell model = formula_over(patch, box);

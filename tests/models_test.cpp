@@ -105,6 +105,7 @@ TEST(Models, OfFormulasHoldTheirDerivatives) {
             caught += most > 0.99;
         }
     EXPECT_GE(made, 11 * 24u);
+    EXPECT_GT(caught, made / 4);  // bounds 1 % smaller
     // Must fail: x^6 about 0 leaves out x^6 alone, and 1 % less than its second derivative is seen to be too little.
     for (const double half : {0.5, 0.125}) {
         const Box box{{-half, half}, {-half, half}};
@@ -113,7 +114,7 @@ TEST(Models, OfFormulasHoldTheirDerivatives) {
         EXPECT_LE(share, 1);
         EXPECT_GT(share, 0.99);
     }
-    std::printf("%zu models of formulas, %zu of them attain their bounds\n", made, caught);
+    std::printf("%zu models of formulas, %zu of them within 1 %% of their bounds\n", made, caught);
 }
 
 TEST(Models, OfFormulasDoNotExistWhereDerivativesDoNot) {
@@ -149,7 +150,7 @@ template <class F> std::size_t for_models(std::uint64_t first_seed, F f) {
             const Box cell{{patch.lines_u()[0], patch.lines_u()[1]}, {patch.lines_v()[0], patch.lines_v()[1]}};
             if (PolynomialCell(patch, cell).exists()) continue;
             const ModelSource source(patch, cell);
-            for (int n = 0; n < 12; ++n) {
+            for (int n = 0; n < 5; ++n) {
                 const double size = std::pow(2.0, -random.number(0, 6));
                 const auto piece = [&](const Interval& x) {
                     const double at = x.lo + (x.hi - x.lo) * random.number(0, 1 - size);
@@ -188,9 +189,9 @@ TEST(Models, SecondDerivativesAreAsNearAsProved) {
         EXPECT_FALSE(wrong) << type.name;
         all.wrong += wrong, all.wrong_if_small += wrong_if_small;
     });
-    EXPECT_GE(all.types, 3u);
-    EXPECT_GT(all.models, 60u);
-    EXPECT_GT(all.wrong_if_small, all.models / 20);  // must fail: bounds a fifth as large are caught
+    EXPECT_GE(all.types, 46u);
+    EXPECT_GT(all.models, 300u);
+    EXPECT_GT(all.wrong_if_small, all.models / 4);  // must fail: bounds a fifth as large are caught
     std::printf("%zu models of %zu types: %zu wrong; %zu would be were their bounds a fifth\n", all.models, all.types, all.wrong, all.wrong_if_small);
 }
 

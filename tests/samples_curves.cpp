@@ -25,15 +25,12 @@ Curve arc(Random& r, double degrees) {
     const Transform turn = Transform::rotate(cross(a, r.vector() + Point{0, 3, 0}), degrees);
     return make_arc(center, center + a, center + turn.vector(a));
 }
-/// A helix: not a spline, so it runs on jets only.
+/// A helix: not a spline, so it runs on jets and models only.
 struct Helix {
     Point center;
     double begin = -1, end = 2.5;
     template <class S> Vec3<S> operator()(const S& t) const {
         return {cos(t) + center.x, sin(t) + center.y, S(exp(t * 0.3)) + center.z};
-    }
-    Vec3<Polynomial> operator()(const Polynomial&) const {
-        return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
     }
 };
 

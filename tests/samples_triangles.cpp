@@ -80,7 +80,6 @@ struct Wave {
         const auto at = [&](int axis) -> S { return from[axis] + t * (to[axis] - from[axis]) + bump * bend[axis]; };
         return {at(0), at(1), at(2)};
     }
-    Vec3<Polynomial> operator()(const Polynomial&) const { return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()}; }
 };
 Curve wave(Random& r, const Point& from, const Point& to) { return make_curve(Wave{from, to, r.vector(2)}); }
 
@@ -96,7 +95,6 @@ struct Bump {
         const S high = corner ? S(absolute(S(t - 0.9)) - 0.9 + t * 0.8) : S(t * (1.0 - t) * exp(S(-square(S((t - 0.9) * 50.0)))));
         return {S(from.x + t * (to.x - from.x)), S(from.y + t * (to.y - from.y)), S(from.z + t * (to.z - from.z) + high)};
     }
-    Vec3<Polynomial> operator()(const Polynomial&) const { return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()}; }
 };
 Curve bump(Random&, const Point& from, const Point& to) { return make_curve(Bump{from, to, false}); }
 Curve corner(Random&, const Point& from, const Point& to) { return make_curve(Bump{from, to, true}); }
@@ -104,7 +102,6 @@ Curve corner(Random&, const Point& from, const Point& to) { return make_curve(Bu
 struct FromZero {
     bool larger_of;
     template <class S> S operator()(const S& t) const { return larger_of ? larger(S(0.0), t) : choose(Comparison::less_equal, t, S(0.0), S(0.0), t, true); }
-    Polynomial operator()(const Polynomial&) const { return Polynomial::nothing(); }
 };
 
 const std::vector<double> kT{0, 1}, kT2{0, 0, 1}, kT3{0, 0, 0, 1}, kQuartic{0, 0, 0, 2, -1}, kSmooth{0, 0, 3, -2};

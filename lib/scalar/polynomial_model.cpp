@@ -88,7 +88,7 @@ struct ModelArithmetic {
         for (int i = 0; i <= p; ++i)
             for (int j = 0; j <= q; ++j) r.coefficient(i, j) = Interval(at(i, j));
         r.x_ = x, r.y_ = y, r.model_ = true;
-        r.rest_ = zero(rest) ? rest : Rest{safe(rest.f), safe(rest.u), safe(rest.v), safe(rest.uu), safe(rest.uv), safe(rest.vv)};
+        r.rest_ = {safe(rest.f), safe(rest.u), safe(rest.v), safe(rest.uu), safe(rest.uv), safe(rest.vv)};
         return r;
     }
     static Polynomial variable(const Interval& t, bool is_u) {
