@@ -132,7 +132,8 @@ void Refinement::bound_in(const BoundCell& cell, const PatchMesh& mesh, const Pa
         for (std::size_t i = 0; i < n; ++i) {
             PatchTriangle& t = *triangles[first + i];
             t.proof = bounds[i];
-            if (!quick && !(bounds[i].own(measure_) <= tolerance_ - lanes.slack[i])) of.push_back(&t), above.push_back(bounds[i]), data.push_back(corners_of(mesh, t));
+            if (quick || bounds[i].own(measure_) <= tolerance_ - lanes.slack[i]) continue;
+            of.push_back(&t), above.push_back(bounds[i]), data.push_back(corners_of(mesh, t));
         }
     }
     if (of.empty()) return;
