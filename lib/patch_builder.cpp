@@ -30,29 +30,22 @@ void PatchBuilder::ragged_strip(const Chain& outer, const Chain& inner, const Be
 }
 
 void PatchBuilder::in_step(const std::vector<Corners>& triangles) {
-    // The corners of a triangle are outer, further on one chain, inner: its third edge is shared with the triangle before, and one of the others with that behind.
-    std::uint32_t before = kNone;
+    // Corners are one of the outer chain, the next of either chain, one of the inner chain.
+    std::uint32_t shared = kNone;  // with the triangle before
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const auto [a, b, c] = triangles[i];
-        const bool last = i + 1 == triangles.size();
-        const bool on_outer = last || triangles[i + 1][0] == b;  // else b is the next corner of the inner chain
-        const auto here = before != kNone ? before : kNone;
+        const bool last = i + 1 == triangles.size(), on_outer = last || triangles[i + 1][0] == b;
+        // Only the edges along the chains, the first and the last one can be known to others.
+        const auto find = [&](std::uint32_t p, std::uint32_t q, bool within) { return within && !last ? edge_within(p, q) : edge(p, q); };
         std::uint32_t ab, bc, ca;
-        const auto along = [&](std::uint32_t p, std::uint32_t q) { return edge(p, q); };
-        const auto next = [&](std::uint32_t p, std::uint32_t q) { return last ? edge(p, q) : edge_within(p, q); };
         if (mirrored_) {
-            ca = here != kNone ? here : edge(a, c);
-            bc = on_outer ? next(c, b) : along(c, b);
-            ab = on_outer ? along(b, a) : next(b, a);
+            ca = shared != kNone ? shared : edge(a, c), bc = find(c, b, on_outer), ab = find(b, a, !on_outer);
             add({a, c, b}, {ca, bc, ab});
-            before = on_outer ? bc : ab;
         } else {
-            ab = on_outer ? along(a, b) : next(a, b);
-            bc = on_outer ? next(b, c) : along(b, c);
-            ca = here != kNone ? here : edge(c, a);
+            ab = find(a, b, !on_outer), bc = find(b, c, on_outer), ca = shared != kNone ? shared : edge(c, a);
             add({a, b, c}, {ab, bc, ca});
-            before = on_outer ? bc : ab;
         }
+        shared = on_outer ? bc : ab;
     }
 }
 

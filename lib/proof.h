@@ -7,13 +7,12 @@
 
 namespace isoparm {
 
-/// A number >= 0, or infinity, rounded up to the upper half of a double: by 2^-20 of it at most, over the whole range of doubles.
+/// A number rounded up to the upper half of a double: by 2^-20 of it at most, over the whole range of doubles. >= 0, or -1; what is no number becomes infinity.
 class RoundedUp {
 public:
     RoundedUp() = default;
     RoundedUp(double x) {
-        const auto bits = std::bit_cast<std::uint64_t>(x);
-        half_ = std::uint32_t((bits + 0xffffffffu) >> 32);
+        if (x == x) half_ = std::uint32_t((std::bit_cast<std::uint64_t>(x) + 0xffffffffu) >> 32);
     }
     operator double() const { return std::bit_cast<double>(std::uint64_t(half_) << 32); }
 
@@ -21,7 +20,7 @@ private:
     std::uint32_t half_ = 0x7ff00000;  // infinity
 };
 
-/// A TriangleBound whose numbers are rounded up, its unit to floats; tilt holds what that moved it. docs/certificates.md, "Rounding of what is kept".
+/// A TriangleBound whose numbers are rounded up, its unit to floats; tilt holds what that moved it. docs/certificates.md, "Rounding".
 struct Proof {
     RoundedUp parametric, normal;
     std::array<RoundedUp, 3> beside, across{0.0, 0.0, 0.0};

@@ -70,9 +70,11 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
             mesh.slack[i] = quick <= kFew * tolerance_ ? quick : slack_of(surface_[member].patch, p, x);
         }
     });
-    if (first == 0) mesh.most_slack = 0;
-    for (std::size_t i = first; i < mesh.slack.size(); ++i) mesh.most_slack = std::max(mesh.most_slack, mesh.slack[i]);
-    mesh.even_slack = mesh.most_slack <= kFew * tolerance_;
+    if (first == 0) mesh.most_slack = 0, mesh.even_slack = true;
+    for (std::size_t i = first; i < mesh.slack.size(); ++i) {
+        mesh.most_slack = std::max(mesh.most_slack, mesh.slack[i]);
+        mesh.even_slack = mesh.even_slack && mesh.slack[i] <= kFew * tolerance_;
+    }
 }
 
 CornerData Refinement::corners_of(const PatchMesh& mesh, const PatchTriangle& t) const {
@@ -131,7 +133,8 @@ void Refinement::bound_in(const BoundCell& cell, const PatchMesh& mesh, const Pa
         for (std::size_t i = 0; i < n; ++i) {
             PatchTriangle& t = *triangles[first + i];
             t.proof = bounds[i];
-            if (!quick && !(bounds[i].own(measure_) <= tolerance_ - lanes.slack[i])) of.push_back(&t), above.push_back(bounds[i]), data.push_back(corners_of(mesh, t));
+            if (quick || bounds[i].own(measure_) <= tolerance_ - lanes.slack[i]) continue;
+            of.push_back(&t), above.push_back(bounds[i]), data.push_back(corners_of(mesh, t));
         }
     }
     if (of.empty()) return;

@@ -25,7 +25,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-constexpr double kBytes = 300;  // that a triangle takes at most while it is refined
+constexpr double kBytes = 240;  // that a triangle takes at most while it is refined
 
 std::string too_many(double needed, const TessellationOptions& options) {
     std::ostringstream text;

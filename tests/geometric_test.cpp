@@ -216,5 +216,39 @@ TEST(Geometric, TriangleWithoutQuietNeighbourIsChargedForItsEdges) {
     EXPECT_NEAR(geometric_bound(flat, around(t)), 0.5, 1e-12);
 }
 
+TEST(Geometric, WhatIsKeptOfABoundIsNotBelowIt) {
+    Random random(11);
+    const auto size = [&] { return std::pow(10.0, 600 * random.number() - 300); };  // all over the range of doubles
+    for (int n = 0; n < 20000; ++n) {
+        const double x = size(), y = RoundedUp(x);
+        ASSERT_GE(y, x);
+        ASSERT_LE(y, x * (1 + 0x1p-20) + 1e-310);
+        ASSERT_EQ(double(RoundedUp(y)), y);
+    }
+    EXPECT_EQ(double(RoundedUp(0.0)), 0);
+    for (const double all : {TriangleBound::none, std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::quiet_NaN()}) EXPECT_EQ(double(RoundedUp(all)), TriangleBound::none);
+    for (int n = 0; n < 2000; ++n) {
+        const double scale = std::pow(10.0, 100 * random.number() - 50);
+        const auto bound = [&] {
+            TriangleBound b;
+            b.parametric = scale * (1 + random.number()), b.normal = scale * random.number(), b.tilt = 1e-9 * random.number(), b.turn = random.number(), b.quiet = true;
+            for (int k = 0; k < 3; ++k) b.beside[std::size_t(k)] = b.normal * random.number(), b.across[std::size_t(k)] = scale * random.number();
+            b.unit = normalized(Point{0.1 * random.number(), 0.1 * random.number(), 1});
+            b.worst_edge = n % 3, b.worst_turn = (n + 1) % 3, b.worst_across = (n + 2) % 3;
+            return b;
+        };
+        const TriangleBound t = bound(), beside[3] = {bound(), bound(), bound()};
+        const Proof kept = t, kept_beside[3] = {beside[0], beside[1], beside[2]};
+        const TriangleBound back = kept;
+        ASSERT_LE(length(back.unit - t.unit) + t.tilt, back.tilt);
+        ASSERT_TRUE(back.quiet && back.worst_edge == t.worst_edge && back.worst_turn == t.worst_turn && back.worst_across == t.worst_across);
+        ASSERT_TRUE(back.parametric >= t.parametric && back.normal >= t.normal && back.turn >= t.turn && kept.own(Measure::geometric) >= t.own(Measure::geometric));
+        const double exact = geometric_bound(t, std::array<Neighbour, 3>{{{&beside[0], 0}, {&beside[1], 2}, {}}});
+        const double rounded = geometric_bound(kept, std::array<ProvedNeighbour, 3>{{{&kept_beside[0], 0}, {&kept_beside[1], 2}, {}}});
+        ASSERT_GE(rounded, exact);
+        ASSERT_LE(rounded, exact * (1 + 4e-6));
+    }
+}
+
 }  // namespace
 }  // namespace isoparm::tests
