@@ -50,13 +50,13 @@ const QuickKernel* quick_kernels(Isa isa);  // by QuickLeaf::Kind
 class QuickPatch {
 public:
     QuickPatch(const ExactPatch& patch, const Point& centre);
-    const ExactPatch& patch() const { return patch_; }
-    std::size_t bytes() const { return leaves_.capacity() * sizeof(QuickLeaf) + coefficients_.capacity() * sizeof(float); }
+    const QuickLeaf& leaf(std::size_t i) const { return leaves_[i]; }
+    const float* coefficients(std::size_t i) const { return coefficients_.data() + leaves_[i].first; }
     /// False where there is only double precision for this leaf.
     bool meet(std::size_t leaf, const QuickRays& rays, const float* tfar, const int* valid, QuickHits& hits) const {
         const QuickLeaf& l = leaves_[leaf];
         if (l.kind == QuickLeaf::none) return false;
-        kernels_[l.kind](l, &coefficients_[l.first], rays, tfar, valid, hits);
+        kernels_[l.kind](l, coefficients_.data() + l.first, rays, tfar, valid, hits);
         return true;
     }
 
