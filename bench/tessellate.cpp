@@ -25,6 +25,7 @@ Work tessellate_once(const Composite& surface, double relative, Measure measure 
     options.tolerance = relative * bounding_box(surface).diagonal();
     options.measure = measure;
     options.quality = quality;
+    options.fans = true;
     const Tessellation t = tessellate(surface, options);
     if (!(t.certified_error <= t.tolerance) || t.topology.t_junctions > 0)
         throw std::logic_error("the mesh is not what was asked for");

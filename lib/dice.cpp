@@ -211,7 +211,7 @@ Choice choose(const Bends& bends, double tolerance, Measure measure, double most
         for (int i = 0; i < kSamples; ++i)
             for (int j = 0; j < kSamples; ++j) squares += dot(bends(i, j).uu, bends(i, j).uu) * columns + dot(bends(i, j).vv, bends(i, j).vv) * !columns;
         const double usual = std::sqrt(std::sqrt(squares) / kSamples / (6 * tolerance));
-        if (!(usual * usual <= most)) return {};
+        if (!(usual * usual <= most)) continue;  // a surface that bends one way only needs few lines the other way
         const auto better = [&](double n) {
             const Plan p = plan(turned, dv, int(n), tolerance, measure, best.plan.triangles);
             const bool found = p.triangles < best.plan.triangles * (1 - 1e-9);

@@ -93,12 +93,14 @@ void ModelSource::take_quotient(const Patch& patch, const Box& cell) {
     const std::vector<Polynomial> form = patch.exact_cell(column, row);
     if (form.size() != 4) return;
     for (const Polynomial& f : form) p_ = std::max(p_, f.degree_u()), q_ = std::max(q_, f.degree_v());
-    if (p_ > kMostDegree || q_ > kMostDegree) return;
+    if (p_ > kMostDegree || q_ > kMostDegree || !in_scale(rad(cell.u)) || !in_scale(rad(cell.v))) return;
     u_ = mid(cell.u), v_ = mid(cell.v);
     exact_.assign(std::size_t((p_ + 1) * (q_ + 1)), Homogeneous{});
     c_.assign(exact_.size(), Lanes{});
     const std::vector<double> x = powers(rounding::up(rad(cell.u)), p_), y = powers(rounding::up(rad(cell.v)), q_);
     const double relative = (4.0 * (p_ + q_) + 8) * 0x1p-53 * (1 + 1e-12);
+    // What underflows in slack(): less than the smallest number in each product, multiplied by powers of the half-widths at most.
+    const double lost = 4.0 * (p_ + 1) * (q_ + 1) * rounding::kTiny * std::max(1.0, x.back()) * std::max(1.0, y.back());
     for (std::size_t k = 0; k < 4; ++k) {
         for (int i = 0; i <= form[k].degree_u(); ++i)
             for (int j = 0; j <= form[k].degree_v(); ++j) {
@@ -107,7 +109,7 @@ void ModelSource::take_quotient(const Patch& patch, const Box& cell) {
                 c_[n][k] = mid(c);
                 error_[k] += x[std::size_t(i)] * y[std::size_t(j)] * (relative * mag(c) + (c.lo == c.hi ? 0 : rad(c)));
             }
-        error_[k] = safe(error_[k]);
+        error_[k] = safe(error_[k] + lost);
     }
 }
 

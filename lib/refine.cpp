@@ -182,7 +182,8 @@ Refinement::Round Refinement::flip_and_mark(std::uint32_t member) {
         if (!(bound <= tolerance_)) {
             mark_to_split(t.edge[t.proof.worst_edge]);
             r.unbounded += !std::isfinite(bound);
-            r.more += std::isfinite(bound) ? bound / tolerance_ - 1 : 0;
+            // Strips are cut across alone: their error falls with the square of their number.
+            r.more += std::isfinite(bound) ? (mesh.in_fan(t) ? std::sqrt(bound / tolerance_) : bound / tolerance_) - 1 : 0;
             r.worst = std::max(r.worst, bound);
         } else if (!turns_little(mesh, t)) {
             mark_to_split(t.edge[t.proof.worst_turn]);

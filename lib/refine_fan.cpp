@@ -33,6 +33,8 @@ struct StripBends {
 /// Strips serve where they begin less than that many tolerances above one, or with less than that part of what else is above it. Where bases bend
 /// in the tangent plane, as around flat poles, triangles away from the pole do better.
 constexpr double kMostExcess = 1.6, kClearly = 25;
+/// Tolerances up to which a sharper bound is tried.
+constexpr double kNear = 8;
 
 /// From second derivatives, c[3 4 5] of jets, over a part of the strip.
 template <class Jets> StripBends bends_of(const Strip& s, const Jets& jets) {
@@ -120,7 +122,7 @@ TriangleBound Refinement::bound_strip(const PatchMesh& mesh, std::uint32_t membe
     const Point& pole = positions_[mesh.vertex[t.corner[a]]];
     const double slack = std::max(slack_of(patch, s.at(s.along(s.b)), pole), slack_of(patch, s.at(s.along(s.c)), pole));
     StripBends bends = bends_over(s, 1);
-    if (!(bends.bound() + slack <= tolerance_)) {
+    if (!(bends.bound() + slack <= tolerance_) && bends.bound() <= kNear * tolerance_) {
         const StripBends sharp = bends_over(s, SecondDerivatives::pieces);
         bends.base = std::min(bends.base, sharp.base), bends.side = std::min(bends.side, sharp.side);
     }

@@ -333,5 +333,27 @@ TEST(Models, BoundsOfSmallTrianglesAreTight) {
     }
 }
 
+/// Cells as narrow as that: powers of their widths underflow.
+TEST(Models, SlackOfNarrowCellsIsNeverBelowTheDistance) {
+    Random random(3);
+    for (const double width : {1e-6, 1e-15, 1e-20, 1e-24, 1e-26, 1e-40, 1e-100}) {
+        std::vector<std::vector<Point>> net(4, std::vector<Point>(4));
+        std::vector<std::vector<double>> weights(4, std::vector<double>(4));
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = 0; j < 4; ++j) net[i][j] = random.point({double(i), double(j), 0}, 0.3), weights[i][j] = random.number(0.5, 2);
+        const std::vector<double> knots{0, 0, 0, 0, width, width, width, width};
+        const Patch patch = make_bspline_patch(3, 3, knots, knots, net, weights);
+        const ModelSource source(patch, {{0, width}, {0, width}});
+        for (int n = 0; n < 20; ++n) {
+            const Vec2 p{random.number() * width, random.number() * width};
+            const Point x = patch.point(p.x, p.y) + random.vector(n % 2 ? 1e-12 : 0.1);
+            const auto exact = patch.enclose_point(p.x, p.y);
+            const auto apart = [](double a, const Interval& b) { return std::max({a - b.hi, b.lo - a, 0.0}); };
+            EXPECT_GE(source.slack(p, x), length(Point{apart(x.x, exact.x), apart(x.y, exact.y), apart(x.z, exact.z)})) << width;
+        }
+        EXPECT_EQ(std::isfinite(source.slack({0, 0}, {0, 0, 0})), width > 1e-25) << width << ": cells out of scale are left to intervals";
+    }
+}
+
 }  // namespace
 }  // namespace isoparm::tests
