@@ -126,6 +126,10 @@ public:
     bool fans_broken() const {
         return std::any_of(patches_.begin(), patches_.end(), [](const PatchMesh& mesh) { return mesh.fan_broken; });
     }
+    bool has_fans() const {
+        return std::any_of(patches_.begin(), patches_.end(), [](const PatchMesh& mesh) { return !mesh.fans.empty(); });
+    }
+    void break_fans() { patches_[0].fan_broken = true; }
 
     /// About how many triangles the grids to begin with would have ended with, where those had more than `most`; else 0.
     double planned_triangles() const { return planned_; }

@@ -70,13 +70,19 @@ void refuse_hopeless(const Composite& surface, const Refinement& refinement, con
                                            ". Ask for a larger tolerance or raise the budget (--max-triangles).");
 }
 
+/// Strips were no good where a mesh has that many times the triangles that it began with: it is begun anew without.
+constexpr std::size_t kGrown = 8;
+
 void refine(Refinement& refinement, const TessellationOptions& options) {
     double start_bound = 0, last_needed = 0;
     constexpr int max_rounds = 400;  // every round halves the worst edges; 2 x 52 bits of parameters and room
+    std::size_t at_first = 0;
     int coincident_rounds = 0, lost_rounds = 0, stale_rounds = 0;
     std::size_t fewest_unbounded = SIZE_MAX;
     for (int round = 0; round < max_rounds; ++round) {
         const bool done = refinement.bound_and_mark() && !refinement.mark_with_neighbours();
+        if (round == 0) at_first = refinement.triangle_count();
+        if (round > 4 && refinement.has_fans() && refinement.triangle_count() > kGrown * at_first) refinement.break_fans();
         if (refinement.fans_broken()) return;
         const double needed = refinement.predicted_triangles();
         if (refinement.worst_slack() > options.tolerance)
