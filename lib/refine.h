@@ -83,6 +83,7 @@ struct PatchMesh {
     std::vector<double> breaks_u, breaks_v;  // of the patch
     std::vector<Point> poles;                // its collapsed edges
     std::vector<PoleFan> fans;               // those around which triangles are bounded together
+    bool fan_broken = false;                 // one was, and cannot be any more
 
     std::array<std::uint32_t, 3> vertices(const PatchTriangle& t) const { return {vertex[t.corner[0]], vertex[t.corner[1]], vertex[t.corner[2]]}; }
     /// Triangles that name a mesh vertex twice, at poles and seams, are segments and left out of the mesh.
@@ -124,6 +125,15 @@ public:
     /// Marks those edges of the triangles left out that no other triangle has. False when nothing is lost; true without a
     /// mark when a whole patch is one vertex that no triangle has.
     bool mark_lost_edges();
+
+    /// Was a fan given up in the middle? What was cut for its strips is a bad start for triangles that are bounded each for itself.
+    bool fans_broken() const {
+        return std::any_of(patches_.begin(), patches_.end(), [](const PatchMesh& mesh) { return mesh.fan_broken; });
+    }
+    bool has_fans() const {
+        return std::any_of(patches_.begin(), patches_.end(), [](const PatchMesh& mesh) { return !mesh.fans.empty(); });
+    }
+    void break_fans() { patches_[0].fan_broken = true; }
 
     /// About how many triangles the grids to begin with would have ended with, where those had more than `most`; else 0.
     double planned_triangles() const { return planned_; }

@@ -172,6 +172,7 @@ void Refinement::bound_fans(std::uint32_t member) {
     std::vector<char> good;
     for (PoleFan& f : mesh.fans) {
         good.push_back(f.is_graph(mesh) && (f.settled || strips_are_better(mesh, member, f)));
+        mesh.fan_broken |= f.settled && !good.back();
         f.settled = true;
     }
     for (std::size_t k = 0; k < good.size(); ++k) {

@@ -70,13 +70,20 @@ void refuse_hopeless(const Composite& surface, const Refinement& refinement, con
                                            ". Ask for a larger tolerance or raise the budget (--max-triangles).");
 }
 
+/// Strips were no good where a mesh has that many times the triangles that it began with: it is begun anew without.
+constexpr std::size_t kGrown = 8;
+
 void refine(Refinement& refinement, const TessellationOptions& options) {
     double start_bound = 0, last_needed = 0;
     constexpr int max_rounds = 400;  // every round halves the worst edges; 2 x 52 bits of parameters and room
+    std::size_t at_first = 0;
     int coincident_rounds = 0, lost_rounds = 0, stale_rounds = 0;
     std::size_t fewest_unbounded = SIZE_MAX;
     for (int round = 0; round < max_rounds; ++round) {
         const bool done = refinement.bound_and_mark() && !refinement.mark_with_neighbours();
+        if (round == 0) at_first = refinement.triangle_count();
+        if (round > 4 && refinement.has_fans() && refinement.triangle_count() > kGrown * at_first) refinement.break_fans();
+        if (refinement.fans_broken()) return;
         const double needed = refinement.predicted_triangles();
         if (refinement.worst_slack() > options.tolerance)
             throw Error(ErrorKind::budget, "the tolerance " + to_text(options.tolerance) + " cannot be reached: rounding, or a gap between patches that were joined, puts a vertex " +
@@ -210,9 +217,14 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
     const bool turns = options.measure == Measure::geometric && (options.study || options.normal_deviation > 0);
     const double turn = options.normal_deviation > 0 ? tangent_down(options.normal_deviation) : turns ? TriangleBound::none : TriangleBound::unasked;
     const auto fast = [&] {
-        auto refined = std::make_unique<Refinement>(surface, topology, options.tolerance, options.measure, double(options.max_triangles), turn, options.fans && !options.bounds && !(options.normal_deviation > 0));
-        refuse_hopeless(surface, *refined, options);
-        refine(*refined, options);
+        const auto with = [&](bool fans) {
+            auto refined = std::make_unique<Refinement>(surface, topology, options.tolerance, options.measure, double(options.max_triangles), turn, fans);
+            refuse_hopeless(surface, *refined, options);
+            refine(*refined, options);
+            return refined;
+        };
+        auto refined = with(options.fans && !options.bounds && !(options.normal_deviation > 0));
+        if (refined->fans_broken()) refined = with(false);
         return refined;
     };
     auto refined = fast();
@@ -220,7 +232,7 @@ Tessellation tessellate(const Composite& surface, const TessellationOptions& opt
         const std::size_t triangles = refined->triangle_count();
         optimize(*refined, surface, topology, options.tolerance, options.measure, options.progress);
         refine(*refined, options);  // proves the whole again, and splits what should fail
-        if (refined->triangle_count() > triangles) refined = fast();
+        if (refined->fans_broken() || refined->triangle_count() > triangles) refined = fast();
     }
     const Refinement& refinement = *refined;
 
