@@ -71,6 +71,7 @@ inline Interval pow(const Interval& a, const Interval& p) {
     const auto [low, high] = std::minmax({std::pow(x, p.lo), std::pow(x, p.hi), std::pow(a.hi, p.lo), std::pow(a.hi, p.hi)});
     return checked(std::max(0.0, below(low)), above(high));
 }
+inline Interval pow(const Interval& a, double p) { return pow(a, Interval(p)); }
 
 // ---- jets -----------------------------------------------------------------------------------------------------------
 /// compose() with the coefficients that a jet of order N <= 3 needs.
