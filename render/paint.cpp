@@ -1,5 +1,8 @@
 #include "paint.h"
 
+#include <algorithm>
+#include <array>
+
 #include "text_cairo.h"
 
 namespace isoparm {
@@ -27,6 +30,14 @@ void move(Filled& area, int left, int top) {
 }
 void move(Text& text, int left, int top) { text.at = moved(text.at, left, top); }
 
+/// The pixels of an area of `from` put at (x,y) of `to`, as far as both have them.
+void copy(const Image& from, const std::array<int, 4>& area, int x, int y, Image& to) {
+    const auto [x0, y0, width, height] = area;
+    const int first = std::max({0, -x, -x0}), last = std::min({width, to.width - x, from.width - x0});
+    for (int row = std::max({0, -y, -y0}); row < std::min({height, to.height - y, from.height - y0}) && first < last; ++row)
+        std::copy_n(from.at(x0 + first, y0 + row), 4 * (last - first), to.at(x + first, y + row));
+}
+
 }  // namespace
 
 void paint(const Drawing& drawing, int left, int top, Image& image) {
@@ -45,6 +56,17 @@ void paint(const Drawing& drawing, int left, int top, Image& image) {
                 }
             },
             item.shape);
+}
+
+void paint(const std::vector<DrawnPart>& parts, Image& image) {
+    for (const DrawnPart& part : parts) {
+        Image seen{part.width, part.height, std::vector<float>(4 * static_cast<std::size_t>(part.width) * part.height)};
+        copy(image, {part.x, part.y, part.width, part.height}, 0, 0, seen);
+        const Image before = seen;
+        paint(part.drawing, 0, 0, seen);
+        for (const auto& hole : part.holes) copy(before, hole, hole[0], hole[1], seen);
+        copy(seen, {0, 0, part.width, part.height}, part.x, part.y, image);
+    }
 }
 
 }  // namespace isoparm

@@ -9,6 +9,7 @@
 #include "commands/render_options.h"
 #include "contact_sheet.h"
 #include "error.h"
+#include "paint.h"
 #include "progress.h"
 #include "suggest.h"
 
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr const char* kHelp = R"(usage: isoparm figures [NAME ...] -o DIR [--format F] [--size WxH | --width W] [--samples N] [--tolerance T] ...
 
 Renders every scene that comes with the program, or those named, to DIR/NAME.png, and all of them small on
-DIR/contact_sheet.png (without labels and flat lines when these are apart, in .pdf, .svg and .tex). A figure that fails does not stop the others; its exit code is that of the command.
+DIR/contact_sheet.png. A figure that fails does not stop the others; its exit code is that of the command.
 
 -o DIR            made when it does not exist
 --format F        png (default), exr, or for print pdf, svg, tex (docs/paper.md)
@@ -109,13 +110,14 @@ int run(const std::vector<std::string>& arguments) {
             finite_diagonal(scene, bounding_box(scene));
             const std::string path = (folder / (name + "." + format)).string();
             check_outputs(options, {{"-o", path}}, inputs);
-            const Picture picture = [&] {
+            Picture picture = [&] {
                 ProgressBar bar(name, options.quiet());
                 RenderOptions with_bar = rendering_of(how, path);
                 with_bar.progress = std::ref(bar);
                 return render(scene, with_bar);
             }();
             write_picture(options, path, scene, how, picture);
+            paint(picture.drawn, picture.image);
             thumbnails.push_back(thumbnail(picture.image, kCellWidth, kCellHeight));
             if (!options.quiet()) std::fprintf(stderr, "%s: %s\n", path.c_str(), summary_of(picture).c_str());
             return kSuccess;
