@@ -155,7 +155,11 @@ EnvironmentImages load_environments(const std::vector<Light>& lights) {
     const std::lock_guard lock(mutex);
     for (const Light& l : lights) {
         auto& image = known[l.image];
-        if (!image && !l.image.empty()) image = load_environment(l.image);
+        if (!image && !l.image.empty()) try {
+                image = load_environment(l.image);
+            } catch (const Error& e) {
+                throw Error(e.kind(), (l.place.empty() ? "" : l.place + ": ") + e.what());
+            }
         images.push_back(image);
     }
     return images;

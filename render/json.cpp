@@ -286,6 +286,16 @@ Json Json::at(const std::string& key, const std::string& expected) const {
     fail("found no key " + quoted(key) + ", expected " + expected);
 }
 
+void Json::must_have_one(const std::vector<std::string>& keys) const {
+    const auto found = std::count_if(keys.begin(), keys.end(), [&](const std::string& key) { return find(key) != nullptr; });
+    if (found == 1) return;
+    if (found == 0)
+        for (const Json& member : children())
+            if (const std::string meant = did_you_mean(member.key(), keys); !meant.empty())
+                member.fail_at_key("found the key " + quoted(member.key()) + ", expected one of: " + listed(keys) + meant);
+    fail("found " + std::to_string(found) + " of the keys " + listed(keys) + ", expected one of them");
+}
+
 void Json::allow_keys(const std::vector<std::string>& keys) const {
     for (const Json& member : children()) {
         if (std::find(keys.begin(), keys.end(), member.key()) != keys.end()) continue;

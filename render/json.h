@@ -47,6 +47,8 @@ public:
     std::unique_ptr<Json> find(const std::string& key) const;
     /// A member; when missing, an error that names the key and what it should hold.
     Json at(const std::string& key, const std::string& expected) const;
+    /// Exactly one of these keys must be there; others may be.
+    void must_have_one(const std::vector<std::string>& keys) const;
     /// Every key must be one of these.
     void allow_keys(const std::vector<std::string>& keys) const;
     bool same(const Json& o) const { return node_ == o.node_; }

@@ -34,6 +34,7 @@ struct Light {
     Point at;                     // sphere: centre; rectangle: corner
     Point direction{0, 0, 1};     // directional: unit, toward the light; environment: unit, up in its image
     std::string image;            // environment: the path of an image of it (environment.h), times `power`; empty: the same from everywhere
+    std::string place;            // of the image in the scene's file, for messages
     double turn = 0;              // radians, about `direction`, of the image
     bool seen = false;            // environment: by the camera, where nothing is
     double radius = 0;            // sphere: scene units; directional: radians, half the width of the disc, 0 for one direction

@@ -107,7 +107,7 @@ Arrow read_arrow(const Json& j, SceneBuilder& builder) {
     const SceneValues& values = builder.values();
     must_be_object(j, "an arrow {\"from\": point, \"to\": point}, or {\"surface\": ..., \"at\": [u, v], \"along\": \"u\"}, or {\"curve\": ..., \"at\": t}");
     const auto from = j.find("from"), surface = j.find("surface"), curve = j.find("curve");
-    if (!!from + !!surface + !!curve != 1) j.fail("found " + std::to_string(!!from + !!surface + !!curve) + " of the keys from, surface and curve, expected one of them");
+    j.must_have_one({"from", "surface", "curve"});
     Arrow arrow;
     Point vector;
     if (from) {

@@ -48,7 +48,7 @@ Point read_place(const Json& j, const SceneValues& values) {
 
 void read_environment_image(const Json& j, const SceneValues& values, Light& l) {
     const auto image = j.find("image"), rotation = j.find("rotation"), up = j.find("up");
-    if (image) l.image = included_file(*image, values.text(*image, "the name of an image of all directions (.exr, .hdr), relative to the scene"));
+    if (image) l.image = included_file(*image, values.text(*image, "the name of an image of all directions (.exr, .hdr), relative to the scene")), l.place = image->place();
     for (const auto* key : {&rotation, &up})
         if (*key && !image) (*key)->fail_at_key("found " + quoted((*key)->key()) + " without \"image\", expected the image that it turns");
     if (rotation) l.turn = std::numbers::pi / 180 * values.in_range(*rotation, -360, 360, "degrees, -360 to 360");

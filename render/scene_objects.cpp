@@ -224,8 +224,7 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
     const SceneValues& values = builder.values();
     must_be_object(j, "an object with one of the keys surface, curve, net, point, axes or arrow");
     const auto surface = j.find("surface"), curve = j.find("curve"), net = j.find("net"), point = j.find("point"), axes = j.find("axes"), arrow = j.find("arrow");
-    const int kinds = !!surface + !!curve + !!net + !!point + !!axes + !!arrow;
-    if (kinds != 1) j.fail("found " + std::to_string(kinds) + " of the keys surface, curve, net, point, axes and arrow, expected one of them");
+    j.must_have_one({"surface", "curve", "net", "point", "axes", "arrow"});
 
     SceneObject o;
     if (surface) {

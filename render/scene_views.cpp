@@ -89,7 +89,7 @@ Inset read_inset(const Json& j, const SceneValues& values) {
         if (both) inset.height = values.in_range(sides[1], 0.02, 1, "a height from 0.02 to 1, in parts of the picture's");
     }
     const auto region = j.find("region"), around = j.find("around"), zoom = j.find("zoom"), camera = j.find("camera");
-    if (!!region + !!around + !!camera != 1) j.fail("found " + std::to_string(!!region + !!around + !!camera) + " of the keys region, around and camera, expected one of them");
+    j.must_have_one({"region", "around", "camera"});
     if (zoom && !around) zoom->fail_at_key("found \"zoom\" without \"around\", expected the point that is in the middle");
     if (region) {
         const auto r = values.numbers(*region, 4, 4, "numbers x0, y0, x1, y1 in parts of the picture, from its top left corner");

@@ -78,7 +78,7 @@ TextBox set(cairo_t* c, const MathText& text, double size, double x, double y, U
         if (pango_layout_get_unknown_glyphs_count(layout.get()) > 0)
             throw Error(ErrorKind::io,
                         "no font was found that has all letters of " + quoted(run.text) +
-                            " in a label, expected one; install one (Debian, Ubuntu: apt-get install fonts-stix)");
+                            " in a label, expected one; install one that has (Debian, Ubuntu: apt-get install fonts-stix for mathematics, fonts-noto for other scripts), or write it with other letters");
         PangoLayoutLine* line = pango_layout_get_line_readonly(layout.get(), 0);
         PangoRectangle ink, logical;
         pango_layout_line_get_extents(line, &ink, &logical);

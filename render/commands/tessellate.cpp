@@ -55,7 +55,7 @@ that patches share are found and share their vertices.
                   format_rounding (how far float32 moves points in .stl and .glb; part of certified_error); - is standard output
 --certificate F   a JSON file that lets isoparm verify --certificate prove the error again: parameters, bound and method of every triangle;
                   it is checked before it is written. Some seconds for 100000 triangles, and 250 bytes for each;
-                  - is standard output
+                  triangles at poles are proved one by one for it: more of them. - is standard output
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
 --quiet           no messages; --threads N  at most N threads: the mesh is the same for every N
 )";
