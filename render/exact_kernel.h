@@ -1,4 +1,4 @@
-// exact_kernel.h -- the arithmetic of rays against the leaves of a patch, several rays side by side; internal to exact_patch.cpp.
+// exact_kernel.h -- the arithmetic of rays against the leaves of a patch, several rays side by side; internal to exact_patch.cpp and exact_leaves.cpp.
 //
 // Each loop is compiled for several instruction sets, which give the same bits. A ray's numbers do not depend on those beside it.
 #pragma once
