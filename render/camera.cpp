@@ -148,6 +148,17 @@ Camera make_camera(const CameraSettings& settings, const std::vector<Point>& dra
     return c;
 }
 
+CameraSettings settings_of(const Camera& c, const Point& middle) {
+    const double depth = c.depth(middle), away = distance(c.eye, middle);
+    CameraSettings s;
+    s.eye = c.eye;
+    s.target = c.eye + (depth > 0 ? depth : away > 0 ? away : 1) * c.forward;
+    s.up = c.up;
+    if (c.orthographic) s.orthographic = 2 * c.half_height;
+    else s.fov = 2 * std::atan(c.half_height) * 180 / std::numbers::pi;
+    return s;
+}
+
 double finest_pixel(const Camera& camera, const Bounds& box) {
     double nearest = std::numeric_limits<double>::infinity();
     for (int corner = 0; corner < 8; ++corner)

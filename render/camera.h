@@ -39,6 +39,9 @@ Camera zoomed(Camera camera, double x, double y, double width, int across, int d
 /// angle.
 Camera make_camera(const CameraSettings& settings, const std::vector<Point>& drawn, int width, int height, const Vec2& room = {});
 
+/// A camera as settings that fit nothing any more: they make it again, at any size. `middle`: the target is as far from the eye, if that is in front.
+CameraSettings settings_of(const Camera& camera, const Point& middle);
+
 /// How far, in scene units, any point of `box` in the picture may move at least before its projection moves by a pixel (to first order).
 double finest_pixel(const Camera& camera, const Bounds& box);
 

@@ -1,5 +1,7 @@
 #include "drawn.h"
 
+#include <cmath>
+
 #include "comb.h"
 #include "error.h"
 #include "twist_arrows.h"
@@ -23,6 +25,13 @@ void add_around(const Point& p, double radius, std::vector<Point>& out) {
         out.push_back(p + radius * d);
         out.push_back(p - radius * d);
     }
+}
+
+/// Balls may be as large as the scene: of what their six ends do not hold, the diagonals hold two thirds.
+void add_ball(const Point& p, double radius, std::vector<Point>& out) {
+    add_around(p, radius, out);
+    const double d = radius / std::sqrt(3.0);
+    for (int corner = 0; corner < 8; ++corner) out.push_back(p + Point{corner & 1 ? d : -d, corner & 2 ? d : -d, corner & 4 ? d : -d});
 }
 
 }  // namespace
@@ -79,7 +88,7 @@ std::vector<Point> drawn_points(const Scene& scene, const std::vector<SceneObjec
                 for (const Point& p : o.net.points) add_around(p, kNetBall * radius, points);
                 break;
             case SceneObject::Kind::point:
-                add_around(o.point, o.line.width > 0 ? 0 : radius, points);
+                add_ball(o.point, o.line.width > 0 ? 0 : radius, points);
                 break;
             case SceneObject::Kind::axes:
                 for (const Point& p : ends_of(o.axes)) points.push_back(p);

@@ -1,6 +1,4 @@
-#include <cmath>
 #include <iostream>
-#include <numbers>
 
 #include "commands/render_options.h"
 #include "error.h"
@@ -39,13 +37,11 @@ int run(const std::vector<std::string>& arguments) {
     const Options options("camera", arguments, known);
     if (options.words().size() != 2 || options.words()[0] != "print") options.fail("expected: isoparm camera print SCENE");
     const Scene scene = options.scene_at(options.words()[1]);
-    const double size = finite_diagonal(scene, bounding_box(scene));
-    const Camera c = camera_of(scene, read_render_options(options));
     const Bounds box = bounding_box(scene);
-    const double depth = c.depth(0.5 * (box.low + box.high));
-    const Point target = c.eye + (depth > 0 ? depth : size > 0 ? size : 1) * c.forward;
-    const std::string view = c.orthographic ? "\"orthographic\": " + to_text(2 * c.half_height) : "\"fov\": " + to_text(2 * std::atan(c.half_height) * 180 / std::numbers::pi);
-    std::cout << "{ \"eye\": " << listed_numbers(c.eye) << ", \"target\": " << listed_numbers(target) << ", \"up\": " << listed_numbers(c.up) << ", " << view << " }\n";
+    finite_diagonal(scene, box);
+    const CameraSettings c = settings_of(camera_of(scene, read_render_options(options)), 0.5 * (box.low + box.high));
+    const std::string view = c.orthographic ? "\"orthographic\": " + to_text(*c.orthographic) : "\"fov\": " + to_text(c.fov);
+    std::cout << "{ \"eye\": " << listed_numbers(*c.eye) << ", \"target\": " << listed_numbers(*c.target) << ", \"up\": " << listed_numbers(*c.up) << ", " << view << " }\n";
     return kSuccess;
 }
 

@@ -69,8 +69,13 @@ Range read_range(const Options& options, const std::string& text, const Scene& s
 
 std::vector<Frame> frames_of(const Options& options, const std::string& pattern) {
     const auto count = options.integer("--frames", 2, 10'000);
-    if (!count) options.fail("--frames is missing: the number of pictures that --animate makes");
-    if (!options.has("--animate")) options.fail("--animate is missing: the parameter that goes from frame to frame, such as --animate h=0:1");
+    if (!count) options.fail("--frames is missing: the number of pictures that --animate and --turntable make");
+    if (!options.has("--animate") && !options.has("--turntable"))
+        options.fail("--animate is missing, or --turntable: what goes from frame to frame, such as --animate h=0:1, or --turntable 360");
+    const double turn = options.number("--turntable").value_or(0);
+    if (!(std::fabs(turn) <= 36'000)) options.fail("--turntable: found " + quoted(*options.value("--turntable")) + ", expected degrees, from -36000 to 36000");
+    // Whole turns end one step before where they began, so that the film can go round and round.
+    const double steps = std::remainder(turn, 360) == 0 ? *count : *count - 1;
     const Scene scene = options.scene();
     std::vector<Range> ranges;
     for (const std::string& text : options.values("--animate")) {
@@ -82,7 +87,7 @@ std::vector<Frame> frames_of(const Options& options, const std::string& pattern)
     if (const auto camera = options.value("--camera")) inputs.push_back({"--camera", *camera});
     std::vector<Frame> frames;
     for (int k = 0; k < *count; ++k) {
-        Frame& f = frames.emplace_back(Frame{path_of(options, pattern, k), {}});
+        Frame& f = frames.emplace_back(Frame{path_of(options, pattern, k), {}, turn * k / steps});
         const double t = static_cast<double>(k) / (*count - 1);
         for (const Range& r : ranges) f.parameters[r.name] = std::clamp((1 - t) * r.from + t * r.to, std::min(r.from, r.to), std::max(r.from, r.to));
         check_picture_path(options, f.path);
@@ -101,12 +106,14 @@ std::vector<Point> points_of(const std::vector<Frame>& frames, const Options& op
         const double z = 1 - (2 * i + 1.0) / kDirections, r = std::sqrt(1 - z * z), turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
         directions.push_back({r * std::cos(turn), r * std::sin(turn), z});
     }
-    for (const Frame& f : frames)
+    for (const Frame& f : frames) {
+        if (&f != &frames.front() && f.parameters == frames.front().parameters) continue;
         for (const Point& p : drawn_points(options.scene(f.parameters))) {
             if (farthest.empty()) farthest.assign(kDirections, p);
             for (int i = 0; i < kDirections; ++i)
                 if (dot(p, directions[i]) > dot(farthest[i], directions[i])) farthest[i] = p;
         }
+    }
     return farthest;
 }
 

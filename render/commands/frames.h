@@ -1,4 +1,4 @@
-// commands/frames.h -- the frames of a film: a scene with parameters that go from one value to another.
+// commands/frames.h -- the frames of a film: a scene with parameters that go from one value to another, seen by cameras that may go round it.
 #pragma once
 #include "commands/options.h"
 
@@ -7,9 +7,10 @@ namespace isoparm {
 struct Frame {
     std::string path;
     std::map<std::string, double> parameters;
+    double degrees = 0;  // how far the cameras have gone
 };
 
-/// --frames and --animate; every path is checked. `pattern`: a path with one %d or %04d. Throws Error(usage).
+/// --frames, --animate and --turntable; every path is checked. `pattern`: a path with one %d or %04d. Throws Error(usage).
 std::vector<Frame> frames_of(const Options& options, const std::string& pattern);
 
 /// Points of what all frames draw, for cameras that fit.

@@ -3,20 +3,23 @@
 #include <filesystem>
 #include <functional>
 
+#include "commands/frame_list.h"
 #include "commands/frames.h"
 #include "commands/interruption.h"
 #include "commands/output.h"
 #include "commands/picture_key.h"
 #include "commands/render_options.h"
+#include "commands/turntable.h"
 #include "paper.h"
 #include "progress.h"
+#include "scratch_folder.h"
 #include "short_text.h"
 #include "suggest.h"
+#include "video.h"
 
 namespace isoparm {
 
 namespace {
-
 
 constexpr const char* kHelp = R"(usage: isoparm render SCENE -o IMAGE [--size WxH] [--samples N] [--tolerance T] [--crop x0,y0,x1,y1] ...
 
@@ -47,20 +50,24 @@ surfaces. The same scene gives the same bytes, for every number of threads and a
                   as they were, and --tolerance is for them only
 --reproducible    no dates or host names in the file, which is the case anyway
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
---frames N        N pictures, 2 to 10000; IMAGE then holds %d or %04d, which is replaced by 0, 1, ... N-1
+--frames N        N pictures, 2 to 10000; IMAGE then holds %d or %04d, which is replaced by 0, 1, ... N-1. An IMAGE that ends in
+                  .mp4, .webm or .gif is a film of them (ffmpeg makes it), --fps F frames a second, 25 when not given.
+                  With --resume FILE, a folder that is made, the same command goes on with the first frame that is missing
 --animate p=A:B   the parameter p goes from A in the first frame to B in the last, evenly; --animate p goes from its min
                   to its max. May be repeated. Cameras that fit have all frames in the picture
+--turntable D     the camera goes round its target, D degrees from first to last (360: all the way, without the first
+                  view again at the end), counter-clockwise seen from above
 --quiet           no messages; --threads N  at most N threads
 
 SIGINT (Ctrl-C) and SIGTERM end a picture early: it is written as it is, whole, with fewer samples (isoparm:unfinished and
 isoparm:samples tell how many), and the exit code is 130 or 143. Once more ends at once. Frames of a film end without the
-one that was being made.
+one that was being made, and without the film.
 )";
 
 constexpr int kUnfinished = -1;
 
-/// Whether the picture is as good as was asked for, as an exit code; or kUnfinished.
-int render_one(const Scene& scene, const std::string& output, RenderOptions how, const Options& options) {
+/// Whether the picture is as good as was asked for, as an exit code; or kUnfinished, and then it is written only with `in_any_case`. `name`: in messages.
+int render_one(const Scene& scene, const std::string& output, const std::string& name, RenderOptions how, const Options& options, bool in_any_case) {
     const bool quiet = options.quiet();
     finite_diagonal(scene, bounding_box(scene));
     how = rendering_of(std::move(how), output);
@@ -70,12 +77,13 @@ int render_one(const Scene& scene, const std::string& output, RenderOptions how,
         if (bar.enabled()) how.tell_noise = [&](double noise) { bar.note("noise " + short_text(noise, 3)); };
         return render(scene, how);
     }();
+    if (!picture.whole && !in_any_case) return kUnfinished;
     write_picture(options, output, scene, how, picture);
-    if (!quiet) std::fprintf(stderr, "%s: %s\n", output.c_str(), summary_of(picture).c_str());
+    if (!quiet) std::fprintf(stderr, "%s: %s\n", name.c_str(), summary_of(picture).c_str());
     const SampleCount& n = picture.samples;
     if (!picture.whole) return kUnfinished;
     if (!(n.missed > 0)) return kSuccess;
-    std::fprintf(stderr, "isoparm: %s: %s %% of the picture did not come to a noise of %s within %d samples a pixel; --samples allows for more\n", output.c_str(), short_text(100 * n.missed, 3).c_str(),
+    std::fprintf(stderr, "isoparm: %s: %s %% of the picture did not come to a noise of %s within %d samples a pixel; --samples allows for more\n", name.c_str(), short_text(100 * n.missed, 3).c_str(),
                  short_text(n.target, 3).c_str(), n.most_asked);
     return kWarning;
 }
@@ -93,7 +101,7 @@ int render_long(const Scene& scene, const std::string& output, RenderOptions how
     if (options.has("--preview")) how.preview = [&](const Picture& picture) { write_picture(options, output, scene, how, picture); };
     const Interruption interruption(options.quiet());
     how.stop = [&] { return interruption.signal() != 0; };
-    const int code = render_one(scene, output, how, options);
+    const int code = render_one(scene, output, output, how, options, true);
     if (code == kUnfinished) {
         if (!options.quiet())
             std::fprintf(stderr, "isoparm: %s was written before it was finished%s\n", output.c_str(), how.checkpoint.path.empty() ? "" : (", the same command goes on with it (" + how.checkpoint.path + ")").c_str());
@@ -114,25 +122,86 @@ Scene scene_of(const Options& options, const std::map<std::string, double>& para
     return scene;
 }
 
+/// Everything that the frames depend on.
+std::string film_key(const std::vector<Frame>& frames, const RenderOptions& how, const Options& options) {
+    std::string key = picture_key(scene_of(options, frames.front().parameters), how, options) + "frames " + std::to_string(frames.size()) + "\nturntable " + to_text(options.number("--turntable").value_or(0)) + "\n";
+    for (const auto& text : options.values("--animate")) key += "animate " + text + "\n";
+    for (const Aov a : how.aovs) key += "aov " + std::to_string(static_cast<int>(a)) + "\n";
+    return key;
+}
+
+/// Frames, each in its file, and the film of them where `output` is one.
+int render_frames(const std::string& output, RenderOptions how, const Options& options) {
+    for (const char* one : {"--preview", "--checkpoint-every"})
+        if (options.has(one)) options.fail(std::string(one) + ": found --frames, expected a single picture");
+    const bool film = is_video(output);
+    const double rate = options.number("--fps").value_or(25);
+    if (options.has("--fps") && !film) options.fail("--fps: found " + quoted(output) + ", expected a film (.mp4, .webm, .gif)");
+    if (!(rate >= 0.1 && rate <= 240)) options.fail("--fps: found " + quoted(*options.value("--fps")) + ", expected 0.1 to 240 frames a second");
+    const Scene scene = options.scene();
+    std::vector<NamedFile> inputs = inputs_of(scene);
+    if (const auto camera = options.value("--camera")) inputs.push_back({"--camera", *camera});
+    const bool transparent = !scene.image.background;
+    if (film) {
+        if (transparent && !holds_transparency(output)) options.fail("-o: found " + quoted(output) + ", which holds nothing transparent, expected .webm or .gif, or a scene with a background");
+        check_outputs(options, {{"-o", output}}, inputs);
+        find_encoder(output);
+    }
+    const auto kept = options.value("--resume");
+    std::optional<ScratchFolder> scratch;
+    if (kept) check_outputs_in(options, *kept, {"frames"}, inputs);
+    else if (film) scratch.emplace();
+    const std::string folder = kept ? *kept : film ? scratch->path() : "";
+    const auto frames = frames_of(options, film ? folder + "/%05d.png" : output);
+    how.also_fit = points_of(frames, options);
+    std::optional<Turntable> table;
+    if (options.has("--turntable")) {
+        std::vector<double> degrees;
+        for (const Frame& f : frames) degrees.push_back(f.degrees);
+        table.emplace(scene_of(options, frames.front().parameters), how, degrees);
+    }
+    std::optional<FrameList> list;
+    if (!folder.empty()) list.emplace(folder, film_key(frames, how, options));
+
+    const Interruption interruption(true);
+    how.stop = [&] { return interruption.signal() != 0; };
+    int code = kSuccess, done = 0;
+    for (const Frame& f : frames) {
+        const int k = done++;
+        if (list && list->has(k, f.path)) continue;
+        Scene now = scene_of(options, f.parameters);
+        if (table) table->turn(now, f.degrees);
+        const std::string name = film ? output + ", frame " + std::to_string(done) + " of " + std::to_string(frames.size()) : f.path;
+        const int good = interruption.signal() ? kUnfinished : render_one(now, f.path, name, how, options, false);
+        if (good == kUnfinished) {
+            if (!options.quiet())
+                std::fprintf(stderr, "isoparm: ended after %d of %zu frames%s\n", k, frames.size(), kept ? (", the same command goes on with them (" + *kept + ")").c_str() : "");
+            return 128 + interruption.signal();
+        }
+        code = std::max(code, good);
+        if (list) list->add(k, f.path);
+    }
+    if (film) {
+        write_video(output, list->pattern(), rate, transparent);
+        if (!options.quiet()) std::fprintf(stderr, "%s: %zu frames, %s s\n", output.c_str(), frames.size(), short_text(static_cast<double>(frames.size()) / rate, 3).c_str());
+    }
+    if (list) list->remove(film ? done : 0);
+    return code;
+}
+
 int run(const std::vector<std::string>& arguments) {
     std::vector<Options::Known> known = paper_options();
     known.insert(known.end(),
-                          {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}, {"--crop", true}, {"--set", true}, {"--reproducible", false}, {"--frames", true}, {"--animate", true},
+                          {{"-o", true}, {"--size", true}, {"--samples", true}, {"--tolerance", true}, {"--crop", true}, {"--set", true}, {"--reproducible", false}, {"--frames", true}, {"--animate", true}, {"--turntable", true}, {"--fps", true},
                            {"--camera", true}, {"--exact", false}, {"--aov", true}, {"--noise", true}, {"--preview", false}, {"--resume", true}, {"--checkpoint-every", true}});
     const Options options("render", arguments, known);
     const std::string output = options.required("-o", "the image file to write");
     RenderOptions how = read_render_options(options);
     how.aovs = read_aovs(options, output);
     how.exact = options.has("--exact");
-    if (options.has("--frames") || options.has("--animate")) {
-        const auto frames = frames_of(options, output);
-        how.also_fit = points_of(frames, options);
-        for (const char* one : {"--resume", "--preview", "--checkpoint-every"})
-            if (options.has(one)) options.fail(std::string(one) + ": found --frames, expected a single picture");
-        int code = kSuccess;
-        for (const Frame& f : frames) code = std::max(code, render_one(scene_of(options, f.parameters), f.path, how, options));
-        return code;
-    }
+    if (options.has("--frames") || options.has("--animate") || options.has("--turntable")) return render_frames(output, std::move(how), options);
+    if (is_video(output) && std::filesystem::path(output).extension() != ".gif") options.fail("-o: found " + quoted(output) + ", a film, expected --frames N too, and --turntable or --animate");
+    if (options.has("--fps")) options.fail("--fps: found a single picture, expected --frames N");
     check_picture_path(options, output);
     std::vector<NamedFile> files;
     for (const std::string& file : paper_files(output)) files.push_back({"-o", file});
