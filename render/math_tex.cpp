@@ -1,6 +1,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "math_symbols.h"
 #include "math_text.h"
 
 namespace isoparm {
@@ -32,14 +33,18 @@ bool prose(const TextRun& run) {
 
 std::string mathematics(const TextRun& run) {
     std::string all;
-    for (const std::string& c : characters(run.text)) {
-        const std::string name = tex_of_symbol(c);
+    const auto list = characters(run.text);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const std::string& c = list[i];
+        std::string name = tex_of_symbol(c), closing;
+        for (; i + 1 < list.size() && !tex_of_accent(list[i + 1]).empty(); ++i) all += tex_of_accent(list[i + 1]) + "{", closing += "}";
         const bool letter = c.size() == 1 && std::isalpha(static_cast<unsigned char>(c[0]));
         if (!name.empty()) all += name;
         else if (c.size() > 1) all += "\\text{" + c + "}";
         else if (run.bold && letter) all += "\\mathbf{" + c + "}";
         else if (!run.italic && letter) all += "\\mathrm{" + c + "}";
         else all += escaped(c);
+        all += closing;
     }
     return all;
 }

@@ -4,8 +4,8 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <map>
 
+#include "math_symbols.h"
 #include "suggest.h"
 
 namespace isoparm {
@@ -13,28 +13,6 @@ namespace {
 
 constexpr double kScript = 0.70, kSubscript = -0.20, kSuperscript = 0.38;
 constexpr int kDeepest = 8;
-
-struct Symbol {
-    const char* text;
-    bool italic;
-};
-const std::map<std::string, Symbol>& symbols() {
-    static const std::map<std::string, Symbol> all{
-        {"alpha", {"α", true}},    {"beta", {"β", true}},   {"gamma", {"γ", true}},   {"delta", {"δ", true}},
-        {"epsilon", {"ε", true}},  {"zeta", {"ζ", true}},   {"eta", {"η", true}},     {"theta", {"θ", true}},
-        {"iota", {"ι", true}},     {"kappa", {"κ", true}},  {"lambda", {"λ", true}},  {"mu", {"μ", true}},
-        {"nu", {"ν", true}},       {"xi", {"ξ", true}},     {"pi", {"π", true}},      {"rho", {"ρ", true}},
-        {"sigma", {"σ", true}},    {"tau", {"τ", true}},    {"upsilon", {"υ", true}}, {"phi", {"φ", true}},
-        {"chi", {"χ", true}},      {"psi", {"ψ", true}},    {"omega", {"ω", true}},   {"Gamma", {"Γ", false}},
-        {"Delta", {"Δ", false}},   {"Theta", {"Θ", false}}, {"Lambda", {"Λ", false}}, {"Xi", {"Ξ", false}},
-        {"Pi", {"Π", false}},      {"Sigma", {"Σ", false}}, {"Phi", {"Φ", false}},    {"Psi", {"Ψ", false}},
-        {"Omega", {"Ω", false}},   {"cdot", {"·", false}},  {"times", {"×", false}},  {"le", {"≤", false}},
-        {"ge", {"≥", false}},      {"ne", {"≠", false}},    {"pm", {"±", false}},     {"infty", {"∞", false}},
-        {"partial", {"∂", false}}, {"oplus", {"⊕", false}}, {"to", {"→", false}},     {"prime", {"′", false}},
-        {"circ", {"°", false}},    {"ldots", {"…", false}}, {"sin", {"sin", false}},  {"cos", {"cos", false}},
-        {"exp", {"exp", false}},   {"sum", {"∑", false}},   {"in", {"∈", false}},     {"quad", {"\u2003", false}}};
-    return all;
-}
 
 bool letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 std::size_t character(const std::string& s, std::size_t at) {  // its bytes
@@ -48,7 +26,10 @@ public:
     explicit Parser(const std::string& text) : text_(text) {}
 
     void prose(std::size_t from, std::size_t to) {
-        for (std::size_t i = from; i < to; i += character(text_, i)) put(text_.substr(i, character(text_, i)), false);
+        for (std::size_t i = from; i < to; i += character(text_, i)) {
+            if (text_[i] == '\\' && i + 1 < to && text_[i + 1] == '$') ++i;
+            put(text_.substr(i, character(text_, i)), false);
+        }
     }
     void mathematics(std::size_t from, std::size_t to) {
         for (at_ = from; at_ < to;) atom(to);
@@ -104,26 +85,106 @@ private:
         const std::size_t start = at_++;
         while (at_ < to && letter(text_[at_])) ++at_;
         const std::string name = text_.substr(start + 1, at_ - start - 1);
-        if (name == "mathbf" || name == "mathrm") {
-            const bool bold = bold_, upright = upright_;
-            (name == "mathbf" ? bold_ : upright_) = true;
-            if (at_ >= to || text_[at_] != '{') fail(start, "found \"\\" + name + "\", expected {letters} behind it");
-            group(to);
-            bold_ = bold;
-            upright_ = upright;
+        if (name.empty()) return sign(start, to);
+        if (const auto symbol = math_symbol(name)) return put(symbol->text, symbol->italic);
+        if (const std::string accent = math_accent(name); !accent.empty()) return set(accents_, accents_ + accent, [&] { argument(name, to); });
+        if (name == "mathbf" || name == "boldsymbol") return set(bold_, true, [&] { argument(name, to); });
+        if (name == "mathrm" || name == "operatorname") return set(upright_, true, [&] { argument(name, to); });
+        if (name == "mathbb" || name == "mathcal") return set(alphabet_, name, [&] { argument(name, to); });
+        if (name == "mathit") return argument(name, to);
+        if (name == "text" || name == "textrm") {
+            const auto [from, end] = braces(name, to);
+            prose(from, end);
             return;
         }
-        const auto known = symbols().find(name);
-        if (known == symbols().end()) {
-            std::vector<std::string> names{"mathbf", "mathrm"};
-            for (const auto& s : symbols()) names.push_back(s.first);
-            fail(start, "found \"\\" + name + "\", expected the name of a Greek letter or sign, such as \\alpha" +
-                            did_you_mean(name, names));
+        if (name == "frac" || name == "tfrac" || name == "dfrac") return fraction(name, to);
+        if (name == "sqrt") {
+            put("\u221a", false);
+            return bracketed(name, to, true);
         }
-        put(known->second.text, known->second.italic);
+        if (name == "left" || name == "right") {
+            if (at_ < to && text_[at_] == '.') ++at_;
+            return;
+        }
+        std::vector<std::string> names = math_names();
+        fail(start, "found \"\\" + name + "\", expected the name of a Greek letter or sign, such as \\alpha" + did_you_mean(name, names));
     }
-    void put(const std::string& letters, bool italic) {
-        italic = italic && !upright_ && !bold_;
+    /// Behind a backslash that no letter follows.
+    void sign(std::size_t start, std::size_t to) {
+        const char c = at_ < to ? text_[at_++] : '\0';
+        if (c == ',') put("\u2009", false);
+        else if (c == ':' || c == ';' || c == ' ') put("\u2005", false);
+        else if (c && std::string("{}_%$#&|").find(c) != std::string::npos) put(c == '|' ? "\u2225" : std::string(1, c), false);
+        else if (c != '!') fail(start, "found a \"\\\" without a name, expected one such as \\alpha");
+    }
+    /// What stands behind a name: {several} or one.
+    void argument(const std::string& name, std::size_t to) {
+        while (at_ < to && text_[at_] == ' ') ++at_;
+        if (at_ >= to || text_[at_] == '_' || text_[at_] == '^') fail(at_ - 1, "found nothing behind \"\\" + name + "\", expected a character or {several}");
+        atom(to);
+    }
+    /// A fraction in one line; what would be read wrongly without brackets gets some.
+    void fraction(const std::string& name, std::size_t to) {
+        bracketed(name, to, false);
+        put("/", false);
+        bracketed(name, to, true);
+    }
+    /// An argument, in brackets if it is a sum or, where `factors` says so, a product.
+    void bracketed(const std::string& name, std::size_t to, bool factors) {
+        while (at_ < to && text_[at_] == ' ') ++at_;
+        bool needs = false;
+        if (at_ < to && text_[at_] == '{') {
+            const std::size_t here = at_;
+            const auto [from, end] = braces(name, to);
+            at_ = here;
+            Parser inside(text_);
+            inside.depth_ = depth_ + 1;
+            inside.mathematics(from, end);
+            needs = several(inside.runs_, factors);
+        }
+        if (needs) put("(", false);
+        argument(name, to);
+        if (needs) put(")", false);
+    }
+    static bool several(const MathText& runs, bool factors) {
+        int found = 0;
+        for (const TextRun& r : runs) {
+            if (r.rise != 0) continue;  // scripts
+            bool digit = false;
+            for (std::size_t i = 0; i < r.text.size(); i += character(r.text, i)) {
+                const std::string c = r.text.substr(i, character(r.text, i));
+                for (const char* sign : {"+", "\u2212", "±", "=", "/", ",", "·", "×"})
+                    if (c == sign) return true;
+                const bool number = std::isdigit(static_cast<unsigned char>(c[0])) || c == ".";
+                const bool none = c == "\u2009" || c == "∂" || !tex_of_accent(c).empty();
+                if (!none && !(digit && number)) ++found;
+                digit = number;
+            }
+        }
+        return factors && found > 1;
+    }
+    /// Where the text between the brackets that follow begins and ends; reading goes on behind them.
+    std::pair<std::size_t, std::size_t> braces(const std::string& name, std::size_t to) {
+        const std::size_t open = at_;
+        if (open >= to || text_[open] != '{') fail(open - 1, "found \"\\" + name + "\", expected {letters} behind it");
+        for (int depth = 0; at_ < to; ++at_) {
+            depth += text_[at_] == '{' ? 1 : text_[at_] == '}' ? -1 : 0;
+            if (depth == 0) return {open + 1, at_++};
+        }
+        fail(open, "found \"{\" without an end, expected \"}\"");
+    }
+    template <class T, class Do> static void set(T& what, T value, const Do& run) {
+        std::swap(what, value);
+        run();
+        std::swap(what, value);
+    }
+    void put(const std::string& characters, bool italic) {
+        italic = italic && !upright_ && !bold_ && alphabet_.empty();
+        std::string letters;
+        for (std::size_t i = 0; i < characters.size(); i += character(characters, i)) {
+            const std::string other = alphabet_.empty() ? "" : math_letter(alphabet_, characters[i]);
+            letters += (other.empty() ? characters.substr(i, character(characters, i)) : other) + accents_;
+        }
         if (!fresh_ && !runs_.empty() && runs_.back().italic == italic && runs_.back().bold == bold_) {
             runs_.back().text += letters;
             return;
@@ -138,6 +199,7 @@ private:
     MathText runs_;
     double scale_ = 1, rise_ = 0;
     bool bold_ = false, upright_ = false, fresh_ = true, after_subscript_ = false;
+    std::string accents_, alphabet_;  // above each letter; \mathbb or \mathcal
     TextRun::Begins next_ = TextRun::Begins::behind;
     int depth_ = 0;
 };
@@ -153,7 +215,12 @@ bool looks_like_mathematics(const std::string& s) {
 
 MathText parse_math_text(const std::string& text, bool prose) {
     Parser parser(text);
-    if (text.find('$') == std::string::npos) {
+    const auto dollar = [&](std::size_t from) {
+        std::size_t at = text.find('$', from);
+        while (at != std::string::npos && at > 0 && text[at - 1] == '\\') at = text.find('$', at + 1);
+        return at;
+    };
+    if (dollar(0) == std::string::npos) {
         if (!prose && looks_like_mathematics(text))
             parser.mathematics(0, text.size());
         else
@@ -162,7 +229,7 @@ MathText parse_math_text(const std::string& text, bool prose) {
     }
     bool inside = false;
     for (std::size_t from = 0; from <= text.size();) {
-        const std::size_t to = std::min(text.find('$', from), text.size());
+        const std::size_t to = std::min(dollar(from), text.size());
         if (inside && to == text.size())
             throw MathTextError(from - 1, "found \"$\" without an end, expected another \"$\"");
         if (inside)
@@ -173,15 +240,6 @@ MathText parse_math_text(const std::string& text, bool prose) {
         from = to + 1;
     }
     return parser.take();
-}
-
-std::string tex_of_symbol(const std::string& character) {
-    if (character == "\u2212") return "-";
-    if (character == "\u2009") return "\\,";
-    if (character == "\u2032") return "'";
-    for (const auto& [name, symbol] : symbols())
-        if (character == symbol.text && static_cast<unsigned char>(character[0]) >= 0x80) return "\\" + name + " ";
-    return "";
 }
 
 MathText number_text(double x, int digits) {

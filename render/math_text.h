@@ -1,7 +1,7 @@
 // math_text.h -- short texts as a paper prints them: "P_{00}", "c_0", "\alpha_i^2", "Triangle $T_1$".
 //
 // Between two $ is mathematics: letters slanted, digits and signs upright, _ and ^ with one character or {several},
-// names like \alpha. A text without $ is mathematics as a whole when it has _, ^ or \, or no word of two letters.
+// names like \alpha, accents like \hat; \frac{a}{b} stands in one line, as a/b. A text without $ is mathematics as a whole when it has _, ^ or \, or no word of two letters.
 #pragma once
 #include <cstddef>
 #include <stdexcept>
@@ -35,7 +35,5 @@ MathText number_text(double x, int digits);
 
 /// The same in TeX: prose as text, everything else between two $.
 std::string tex_of(const MathText& text);
-/// "\alpha " of "α"; "" of characters that mathematics has no name for.
-std::string tex_of_symbol(const std::string& character);
 
 }  // namespace isoparm

@@ -53,8 +53,23 @@ TEST(MathText, GreekProseAndMinus) {
     EXPECT_EQ(plain(number_text(2.5, 2)), "2.5");
     EXPECT_EQ(plain(number_text(-1e-12, 1)), "0");
 }
+TEST(MathText, FractionsStandInOneLineWithTheBracketsThatTheyNeed) {
+    for (const auto& [text, shown] : {std::pair<std::string, std::string>{"\\frac{1}{2}", "1/2"}, {"\\frac12", "1/2"}, {"\\frac{10}{x_{i+1}}", "10/xi+1"}, {"\\frac{u+v}{2\\pi}", "(u+v)/(2π)"}, {"\\frac{ab}{c}", "ab/c"},
+                                      {"\\frac{\\partial S}{\\partial u}", "∂\u2009S/∂\u2009u"}, {"\\frac{\\frac{1}{2}}{\\hat{x}}", "(1/2)/x\u0302"}, {"\\sqrt{2}", "√2"}, {"\\sqrt{x^2+1}", "√(x2+1)"}, {"\\sqrt{ab}", "√(ab)"}})
+        EXPECT_EQ(plain(parse_math_text(text)), shown) << text;
+}
+TEST(MathText, AccentsAlphabetsAndSigns) {
+    for (const auto& [text, shown] : {std::pair<std::string, std::string>{"\\hat{n}", "n\u0302"}, {"\\vec n_1", "n\u20d71"}, {"\\overline{AB}", "A\u0305B\u0305"}, {"\\mathbb{R}^3", "ℝ3"}, {"\\mathcal{AB}", "𝒜ℬ"},
+                                      {"\\left(x\\right)", "(x)"}, {"\\left.x\\right|", "x|"}, {"\\|x\\|\\,\\{1\\}", "∥x∥\u2009{1}"}, {"\\text{if } u\\leq v", "if \u2009u≤\u2009v"}, {"5 \\$ and $x$", "5 $ and x"}, {"\\operatorname{rot} \\mathit{a}", "rot\u2009a"}})
+        EXPECT_EQ(plain(parse_math_text(text)), shown) << text;
+    EXPECT_TRUE(parse_math_text("\\boldsymbol{S}").at(0).bold);
+    EXPECT_FALSE(parse_math_text("\\mathbb{R}x").at(0).italic);
+    EXPECT_TRUE(parse_math_text("\\mathbb{R}x").at(1).italic);
+    // An accent takes no room of its own.
+    EXPECT_NEAR(text_box(parse_math_text("\\hat{n}"), 100).advance, text_box(parse_math_text("n_{}{}"), 100).advance, 3);
+}
 TEST(MathText, FaultsSayWhere) {
-    for (const auto& [text, offset] : {std::pair<std::string, std::size_t>{"P_{0", 2}, {"P_", 1}, {"a}", 1}, {"x \\alhpa", 2}, {"a $b", 2}}) {
+    for (const auto& [text, offset] : {std::pair<std::string, std::size_t>{"P_{0", 2}, {"\\frac{1}", 7}, {"\\hat", 3}, {"\\text x", 4}, {"a\\", 1}, {"\\frac{1}{\\alhpa}", 9}, {"\\sqrt{x", 5}, {"P_", 1}, {"a}", 1}, {"x \\alhpa", 2}, {"a $b", 2}}) {
         try {
             parse_math_text(text);
             ADD_FAILURE() << text;
