@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
+#include <optional>
 
 #include "arrows.h"
 #include "axes.h"
@@ -11,7 +12,7 @@
 #include "drawn.h"
 #include "flat_lines.h"
 #include "jump_heat.h"
-#include "label_places.h"
+#include "label_anchors.h"
 #include "labels.h"
 #include "legend.h"
 #include "outlines.h"
@@ -42,7 +43,7 @@ public:
     }
 
     Drawing run(const std::vector<SceneObject>& objects) {
-        middle_ = middle_of(objects);
+        anchors_.emplace(scene_, camera_, sight_, pixel_, letter_, objects);
         for (const SceneObject& o : objects)
             if (o.kind == Kind::surface) add_surface_lines(o);
         for (const SceneObject& o : objects) add(o);
@@ -80,7 +81,7 @@ private:
                 for (const Point& p : o.net.points) avoid({p}, kNetBall * radius);
                 return;
             case Kind::point:
-                avoid({o.point}, radius_of_point(o));
+                avoid({o.point}, anchors_->radius_of_point(o));
                 if (o.line.width > 0) add_dot(o);
                 return;
             case Kind::axes:
@@ -133,7 +134,7 @@ private:
             Label& label = labels_.emplace_back();
             label.text = parse_math_text(t.gap, true);
             label.hidden = Hidden::show;
-            request(label, {anchor(t.tip_f, 0), anchor(t.tip_g, 0), anchor(t.foot, 0)});
+            request(label, {anchors_->at(t.tip_f, 0), anchors_->at(t.tip_g, 0), anchors_->at(t.foot, 0)});
         }
         if (!o.twists.legend) return;
         add_twist_legend(surface, o.twists, size_, letter_, drawing_);
@@ -149,10 +150,6 @@ private:
             tips.push_back(tip);
         }
         avoid(tips, 0);
-    }
-    double radius_of_point(const SceneObject& o) const {
-        if (o.line.width > 0) return 0.5 * o.line.width * pixel_ * camera_.pixel_size(camera_.depth(o.point));
-        return radius_of(o, size_);
     }
     void add_dot(const SceneObject& o) {
         constexpr int kCorners = 48;
@@ -199,8 +196,8 @@ private:
     // ---- labels ---------------------------------------------------------------------------------------------------
     void add_labels(const SceneObject& o) {
         for (std::size_t i = 0; i < o.net_labels.size(); ++i)
-            request(o.net_labels[i], {anchor(o.net.points[i], kNetBall * radius_of(o, size_))});
-        if (!o.label.text.empty()) request(o.label, anchors_of(o), o.kind == Kind::surface ? kOnTheSpot : -1);
+            request(o.net_labels[i], {anchors_->at(o.net.points[i], kNetBall * radius_of(o, size_))});
+        if (!o.label.text.empty()) request(o.label, anchors_->of(o), o.kind == Kind::surface ? kOnTheSpot : -1);
     }
     void request(const Label& label, const std::vector<Anchor>& anchors, int otherwise = -1) {
         LabelRequest r{&label,
@@ -209,101 +206,12 @@ private:
                        label.size ? *label.size * pixel_ : letter_,
                        label.color.value_or(ink_color())};
         for (const Anchor& a : anchors)
-            if (std::isfinite(a.at.x + a.at.y) && !(a.seen == 0 && label.hidden == Hidden::hide) && (!place_.inset || inside(a.at)) && !covered(a.at))
+            if (std::isfinite(a.at.x + a.at.y) && !(a.seen == 0 && label.hidden == Hidden::hide) && (!place_.inset || inside(camera_, a.at)) && !covered(a.at))
                 r.anchors.push_back(a);
         requests_.push_back(std::move(r));
     }
     bool covered(const Vec2& p) const {
         return std::any_of(place_.covered.begin(), place_.covered.end(), [&](const auto& b) { return p.x >= b[0] && p.x <= b[0] + b[2] && p.y >= b[1] && p.y <= b[1] + b[3]; });
-    }
-    bool inside(const Vec2& p) const { return p.x >= 0 && p.y >= 0 && p.x <= camera_.width && p.y <= camera_.height; }
-    std::vector<Anchor> anchors_of(const SceneObject& o) const {
-        switch (o.kind) {
-            case Kind::surface:
-                return surface_anchors(o);
-            case Kind::curve:
-                return curve_anchors(o);
-            case Kind::net:
-                return {anchor(o.net.points[o.net.points.size() / 2], kNetBall * radius_of(o, size_))};
-            case Kind::point:
-                return {anchor(o.point, radius_of_point(o))};
-            case Kind::arrow:
-                return {anchor_beyond(o.arrow)};
-            case Kind::axes:
-                break;
-        }
-        return {};
-    }
-    std::vector<Anchor> surface_anchors(const SceneObject& o) const {
-        const Surface& s = surface_of(scene_, o);
-        const Patch& patch = s.patches[s.patches.size() / 2].patch;
-        std::vector<Anchor> anchors;
-        for (const Vec2& uv : o.label.at_uv ? std::vector<Vec2>{*o.label.at_uv} : middle_places(patch)) anchors.push_back(anchor(patch.point(uv.x, uv.y), 0));
-        if (o.label.at_uv || std::any_of(anchors.begin(), anchors.end(), in_sight)) return anchors;
-        const std::vector<Anchor> others = anchors_in_sight(s.patches);
-        return others.empty() ? anchors : others;
-    }
-    static bool in_sight(const Anchor& a) { return a.seen >= 0.5 && std::isfinite(a.at.x + a.at.y); }
-    /// What is seen of a surface whose middle is hidden: places with as much of it around them as there is.
-    std::vector<Anchor> anchors_in_sight(const Composite& patches) const {
-        constexpr std::size_t kLookedAt = 600, kKept = 5;
-        constexpr double kAround = 2.5;  // letters
-        std::vector<Anchor> all;
-        for (const Point& p : places_all_over(patches, kLookedAt))
-            if (const Anchor a = anchor(p, 0); std::isfinite(a.at.x + a.at.y) && inside(a.at)) all.push_back(a);
-        std::vector<std::pair<double, Anchor>> seen;  // the lower, the better
-        for (const Anchor& a : all) {
-            if (!in_sight(a)) continue;
-            double cost = 0;
-            for (const Anchor& b : all) cost -= std::max(0.0, 1 - std::hypot(a.at.x - b.at.x, a.at.y - b.at.y) / (kAround * letter_)) * (in_sight(b) ? 1 : -2);
-            seen.push_back({cost, a});
-        }
-        std::stable_sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-        std::vector<Anchor> best;
-        for (std::size_t k = 0; k < std::min(kKept, seen.size()); ++k) best.push_back(seen[k].second);
-        return best;
-    }
-    std::vector<Anchor> curve_anchors(const SceneObject& o) const {
-        const Curve& c = curve_of(scene_, o);
-        const double radius = o.line.width > 0 ? 0 : radius_of(o, size_);
-        std::vector<double> at;
-        if (o.label.at)
-            at = {*o.label.at};
-        else
-            for (const double t : {0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9})
-                at.push_back(c.begin() + t * (c.end() - c.begin()));
-        std::vector<Anchor> anchors;
-        for (const double t : at) {
-            Anchor a = anchor(c(t), radius);
-            if (o.line.width > 0) a.gap += 0.5 * o.line.width * pixel_;
-            anchors.push_back(a);
-        }
-        return anchors;
-    }
-    /// The tip of an arrow, whose label stands rather ahead of it.
-    Anchor anchor_beyond(const Arrow& arrow) const {
-        Anchor a = anchor(arrow.tip, 0);
-        if (!(camera_.depth(arrow.tail) > 0)) return a;
-        const Vec2 tail = camera_.project(arrow.tail), along{a.at.x - tail.x, a.at.y - tail.y};
-        if (std::hypot(along.x, along.y) > 1) a.away = along;
-        return a;
-    }
-    Anchor anchor(const Point& p, double radius) const {
-        if (!(camera_.depth(p) > 0)) return {{NAN, NAN}, 0, {}, 0};
-        const Vec2 at = camera_.project(p);
-        return {at, sight_.of(p, 1.5 * radius), {at.x - middle_.x, at.y - middle_.y}, in_pixels(radius, p)};
-    }
-    /// The middle of what is drawn: labels stand rather on the outside.
-    Vec2 middle_of(const std::vector<SceneObject>& objects) const {
-        double left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
-        for (const Point& p : drawn_points(scene_, objects)) {
-            if (!(camera_.depth(p) > 0)) continue;
-            const Vec2 at = camera_.project(p);
-            left = std::min(left, at.x), right = std::max(right, at.x);
-            top = std::min(top, at.y), bottom = std::max(bottom, at.y);
-        }
-        return left <= right ? Vec2{0.5 * (left + right), 0.5 * (top + bottom)}
-                             : Vec2{0.5 * camera_.width, 0.5 * camera_.height};
     }
 
     const Scene& scene_;
@@ -312,7 +220,7 @@ private:
     double pixel_, size_, letter_;
     bool isolines_;
     const OverlayPlace& place_;
-    Vec2 middle_;
+    std::optional<LabelAnchors> anchors_;
     std::vector<Obstacle> obstacles_;
     std::vector<LabelRequest> requests_;
     std::deque<Label> labels_;  // that no object has
