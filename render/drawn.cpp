@@ -47,7 +47,7 @@ const Curve& curve_of(const Scene& scene, const SceneObject& o) {
 
 double radius_of(const SceneObject& o, double size) {
     const double part = o.kind == SceneObject::Kind::net ? kRod : o.kind == SceneObject::Kind::point ? kBall : kTube;
-    return o.radius.value_or(part * size);
+    return o.radius && !o.radius->points ? double(*o.radius) : part * size;
 }
 
 std::vector<SceneObject> drawn_objects(const Scene& scene) {

@@ -138,7 +138,7 @@ struct SceneObject {
     std::optional<Color> back;     // Kind::surface: of its other side; default a grey that goes with `color`
     double opacity = 1;
     Material material;             // of traced light
-    std::optional<double> radius;  // of tubes, rods and balls, scene units; default a fraction of the scene's size
+    std::optional<Extent> radius;  // of tubes, rods and balls, scene units (not pixels) or points; default a fraction of the scene's size
     Isolines isolines;
     ColorBy color_by;              // Kind::surface
     JumpHeat jumps;                // Kind::surface

@@ -190,20 +190,24 @@ TwistArrows read_twists(const Json& j, const Json& surface, SceneBuilder& builde
     return twists;
 }
 
+/// 0.5 of "0.5pt".
+std::optional<double> in_points(const Json& j) {
+    if (!j.is(Kind::string) || j.string().size() < 3 || !j.string().ends_with("pt")) return {};
+    const std::string& text = j.string();
+    const char* end = text.data() + text.size() - 2;
+    double points = 0;
+    const auto [stop, error] = std::from_chars(text.data(), end, points);
+    return error == std::errc() && stop == end ? std::optional(points) : std::nullopt;
+}
+
 }  // namespace
 
 /// A number of pixels, or a text such as "0.5pt": points of the printed picture.
 Extent read_pixels(const Json& j, const SceneValues& values, double most, const std::string& what) {
     const std::string expected = what + " in pixels, from 0.01 to " + to_text(most) + ", or in points of the printed picture, such as \"0.5pt\"";
-    if (j.is(Kind::string) && j.string().size() > 2 && j.string().ends_with("pt")) {
-        const std::string& text = j.string();
-        double points = 0;
-        const char* end = text.data() + text.size() - 2;
-        const auto [stop, error] = std::from_chars(text.data(), end, points);
-        if (error == std::errc() && stop == end) {
-            if (!(points >= 0.01 && points <= most)) j.expected(expected);
-            return {points, true};
-        }
+    if (const auto points = in_points(j)) {
+        if (!(*points >= 0.01 && *points <= most)) j.expected(expected);
+        return {*points, true};
     }
     return values.in_range(j, 0.01, most, expected);
 }
@@ -276,7 +280,10 @@ SceneObject read_object(const Json& j, SceneBuilder& builder) {
     if (const auto radius = j.find("radius")) {
         if (o.line.width > 0 && !net)
             radius->fail_at_key(std::string("found both \"radius\" and \"") + (point ? "dot\", expected a ball or a flat dot" : "line\", expected a tube or a flat line"));
-        o.radius = values.positive(*radius, "a positive radius in scene units");
+        const std::string expected = "a positive radius in scene units, or in points of the printed picture, such as \"0.5pt\"";
+        const auto points = in_points(*radius);
+        if (points && !(*points >= 0.01 && *points <= 1000)) radius->expected(expected);
+        o.radius = points ? Extent(*points, true) : Extent(values.positive(*radius, expected));
     }
     if (const auto label = j.find("label")) read_label(*label, builder, surface ? *surface : curve ? *curve : *label, o);
     if (const auto color = j.find("color")) o.color = values.color(*color);

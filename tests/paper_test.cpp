@@ -9,6 +9,7 @@
 #include "camera.h"
 #include "drawn.h"
 #include "expect_program.h"
+#include "image.h"
 #include "outlines.h"
 #include "printed.h"
 #include "overlay.h"
@@ -247,6 +248,33 @@ TEST(ParameterLines, AsVectorsLookLikeTheTracersOwn) {
     // Inside the sheet the tracer paints two whole lines and four halves: the sheet ends there.
     const double bright = bare / (200 * 200);
     EXPECT_NEAR(traced, 0.5 * bright * 4 * (2 * 200 + 4 * 200 / 2.0), 0.1 * traced);
+}
+
+TEST(Paper, TubesAreAsWideInPointsAsTheySay) {
+    // A rod along x and a ball, seen by a camera that is no nearer to them than it likes: width is that on paper.
+    const TemporaryFolder t;
+    const auto covered = [&](const std::string& radius, const std::string& size, const std::string& camera) {
+        write_all(t / "s.json", R"({"isoparm": 1, "curves": {"c": {"type": "line", "points": [[-1,0,0], [1,0,0]]}}, "objects": [{"curve": "c", "radius": )" + radius + R"(, "color": "black"}],
+            "camera": )" + camera + R"(, "image": {"width": 300, "height": 200, "samples": 16, "background": "white"}})");
+        const Outcome o = run("render s.json -o p.png " + size, t.path());
+        EXPECT_EQ(o.code, 0) << o.err;
+        const Image image = read_image(t / "p.png");
+        double dark = 0;  // of the middle column
+        for (int y = 0; y < image.height; ++y) dark += 1 - image.pixels[4 * (static_cast<std::size_t>(y) * image.width + image.width / 2)];
+        return dark;
+    };
+    const double pixels = 2 * 3 * 144 / 72.0;  // a radius of 3 points at 144 pixels an inch
+    for (const std::string camera : {R"({"eye": [0,-5,0], "target": [0,0,0]})", R"({"eye": [0,-20,0], "target": [0,0,0], "fov": 10})", R"({"eye": [0,-5,0], "target": [0,0,0], "orthographic": 2})"}) {
+        const double dark = covered("\"3pt\"", "--width 4in --dpi 144", camera);
+        EXPECT_NEAR(dark, pixels, 0.1 * pixels) << camera;  // its highlights are not black
+        EXPECT_NEAR(covered("\"3pt\"", "--width 4in --dpi 72", camera), dark / 2, 0.05 * dark) << camera;
+    }
+    for (const std::string wrong : {"\"0pt\"", "\"-1pt\"", "0"}) {
+        write_all(t / "s.json", R"({"isoparm": 1, "objects": [{"point": [0,0,0], "radius": )" + wrong + "}]}");
+        const Outcome o = run("render s.json -o p.png", t.path());
+        EXPECT_EQ(o.code, 65) << o.err;
+        EXPECT_NE(o.err.find("expected a positive radius in scene units, or in points"), std::string::npos) << o.err;
+    }
 }
 
 }  // namespace
