@@ -27,11 +27,9 @@ std::string digest_of(const std::string& picture) {
 }  // namespace
 
 FrameList::FrameList(const std::string& folder, const std::string& key) : folder_(folder), key_(sha256(key)) {
-    std::error_code failed;
-    fs::create_directories(folder, failed);
-    if (failed) throw Error(ErrorKind::io, folder + ": cannot make this folder, which is to hold what is done of a film: " + failed.message());
-    if (!fs::exists(path(), failed)) {
-        if (!fs::is_empty(folder, failed)) throw Error(ErrorKind::input, folder + ": found other files, expected what is done of a film, or an empty folder, or none yet");
+    std::error_code none;
+    if (!fs::exists(path(), none)) {
+        if (!fs::is_empty(folder, none)) throw Error(ErrorKind::input, folder + ": found other files, expected what is done of a film, or an empty folder, or none yet");
         return;
     }
     std::istringstream in(read_text_file(path(), kMostBytes));

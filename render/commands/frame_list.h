@@ -8,7 +8,7 @@ namespace isoparm {
 /// The file `frames` in the folder: a key, and a SHA-256 of each frame that was finished. Always whole.
 class FrameList {
 public:
-    /// Makes the folder, or goes on with what is in it. Throws Error(input) when that is of another key, and nothing is touched; Error(io).
+    /// A folder that is there: empty, or to go on with what is in it. Throws Error(input) when that is of another key, and nothing is touched; Error(io).
     FrameList(const std::string& folder, const std::string& key);
     /// Is that frame finished, and are the files of its picture as they were written?
     bool has(int frame, const std::string& picture) const;

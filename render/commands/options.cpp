@@ -114,7 +114,7 @@ Scene Options::scene_at(const std::string& path, const std::map<std::string, dou
     }
     for (const auto& [name, value] : more) parameters[name] = value;
     Scene scene = load_scene(path, parameters);
-    if (!quiet()) print_notes(scene);
+    if (!quiet() && noted_.insert(path).second) print_notes(scene);
     return scene;
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,7 @@ public:
 
     const std::vector<std::string>& words() const { return words_; }
     /// The scene named by the one word of the command line, with its --set parameters; those in `more` count instead. Its notes go
-    /// to stderr.
+    /// to stderr, the first time.
     Scene scene(const std::map<std::string, double>& more = {}) const { return scene_at(scene_path(), more); }
     /// The same for another path.
     Scene scene_at(const std::string& path, const std::map<std::string, double>& more = {}) const;
@@ -53,6 +54,7 @@ private:
     std::map<std::string, std::vector<std::string>> given_;
     std::vector<std::string> words_;
     std::shared_ptr<void> thread_limit_;
+    mutable std::set<std::string> noted_;  // scenes whose notes were told
 };
 
 /// "1e-3" scene units, "1e-4rel" of the bounding-box diagonal, "0.25px" of the picture. Throws Error(usage).

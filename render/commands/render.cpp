@@ -149,6 +149,7 @@ int render_frames(const std::string& output, RenderOptions how, const Options& o
     }
     const auto kept = options.value("--resume");
     std::optional<ScratchFolder> scratch;
+    if (kept && kept->find('%') != std::string::npos) options.fail("--resume: found " + quoted(*kept) + ", expected a name without %");
     if (kept) check_outputs_in(options, *kept, {"frames"}, inputs);
     else if (film) scratch.emplace();
     const std::string folder = kept ? *kept : film ? scratch->path() : "";
