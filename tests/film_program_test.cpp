@@ -100,6 +100,7 @@ TEST(FilmProgram, KilledRunsGoOnWithTheFirstFrameThatIsMissing) {
     ASSERT_TRUE(std::filesystem::exists(t / "f001.png"));
     const auto made = std::filesystem::last_write_time(t / "f000.png");
     write_all(t / "f001.png", "damaged");
+    write_all(t / "part/isoparm.tmp-0123", "what a run leaves that is killed while it names a file");
     const Outcome wrong = run(arguments + " --resume part --samples 8", t.path());
     EXPECT_EQ(wrong.code, 65);
     EXPECT_NE(wrong.err.find("part: found frames of another scene"), std::string::npos) << wrong.err;

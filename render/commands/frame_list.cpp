@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
+#include <vector>
 
 #include "error.h"
 #include "io/atomic_file.h"
@@ -24,13 +25,17 @@ std::string digest_of(const std::string& picture) {
     return all.size() == 64 ? all : sha256(all);
 }
 
+/// What a run that was killed in the midst of naming a file leaves.
+bool is_temporary(const fs::path& path) { return path.filename().string().rfind("isoparm.tmp-", 0) == 0; }
+
 }  // namespace
 
 FrameList::FrameList(const std::string& folder, const std::string& key) : folder_(folder), key_(sha256(key)) {
     std::error_code none;
     if (!fs::exists(path(), none)) {
-        if (!fs::is_empty(folder, none)) throw Error(ErrorKind::input, folder + ": found other files, expected what is done of a film, or an empty folder, or none yet");
-        return;
+        for (const auto& f : fs::directory_iterator(folder))
+            if (!is_temporary(f.path())) throw Error(ErrorKind::input, folder + ": found other files, expected what is done of a film, or an empty folder, or none yet");
+        return write();
     }
     std::istringstream in(read_text_file(path(), kMostBytes));
     std::string first, word, theirs, digest;
@@ -51,6 +56,10 @@ bool FrameList::has(int frame, const std::string& picture) const {
 
 void FrameList::add(int frame, const std::string& picture) {
     digests_[frame] = digest_of(picture);
+    write();
+}
+
+void FrameList::write() const {
     write_atomically(path(), [&](std::ostream& out) {
         out << kFirstLine << "\nkey " << key_ << "\n";
         for (const auto& [k, digest] : digests_) out << k << " " << digest << "\n";
@@ -64,6 +73,10 @@ void FrameList::remove(int frames) {
         std::snprintf(name, sizeof name, "/%05d.png", k);
         fs::remove(folder_ + name, ignored);
     }
+    std::vector<fs::path> left;
+    for (const auto& f : fs::directory_iterator(folder_, ignored))
+        if (is_temporary(f.path())) left.push_back(f.path());
+    for (const fs::path& f : left) fs::remove(f, ignored);
     fs::remove(path(), ignored);
     fs::remove(folder_, ignored);
 }

@@ -19,6 +19,7 @@ public:
     std::string pattern() const { return folder_ + "/%05d.png"; }
 
 private:
+    void write() const;
     std::string path() const { return folder_ + "/frames"; }
     std::string folder_, key_;
     std::map<int, std::string> digests_;
