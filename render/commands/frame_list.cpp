@@ -35,7 +35,8 @@ FrameList::FrameList(const std::string& folder, const std::string& key) : folder
     if (!fs::exists(path(), none)) {
         for (const auto& f : fs::directory_iterator(folder))
             if (!is_temporary(f.path())) throw Error(ErrorKind::input, folder + ": found other files, expected what is done of a film, or an empty folder, or none yet");
-        return write();
+        write();
+        return;
     }
     std::istringstream in(read_text_file(path(), kMostBytes));
     std::string first, word, theirs, digest;
