@@ -23,6 +23,11 @@ template <class Count, class F> void for_all(std::size_t members, Count count, F
     });
 }
 
+/// Do three numbers and three others have the same range?
+bool same_range(double a, double b, double c, double d, double e, double f) {
+    return std::min(std::min(a, b), c) == std::min(std::min(d, e), f) && std::max(std::max(a, b), c) == std::max(std::max(d, e), f);
+}
+
 /// Triangles that are bounded in one go.
 constexpr std::size_t kTogether = 64;
 /// Tolerances around a pole, where triangles smaller than one turn as they like: to ask for less there takes ever smaller triangles.
@@ -114,29 +119,61 @@ void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std
     }
 }
 
+namespace {
+
+/// Triangles to be bounded eight at a time, in two sets: one alone in the first, or two that share their box, as those of a quadrilateral mostly do.
+struct LanesOf {
+    std::array<TriangleLanes, 2> sets;
+    std::array<std::array<PatchTriangle*, TriangleLanes::size>, 2> of;
+    std::size_t count = 0, n = 0;  // sets; triangles of each
+
+    explicit LanesOf(std::size_t sets_used) : count(sets_used) {}
+    bool full() const { return n == TriangleLanes::size; }
+    std::span<const TriangleLanes> used() const { return {sets.data(), count}; }
+};
+
+}  // namespace
+
 /// BoundCell::bound_all() without copies of what passes at once, which is almost everything.
 void Refinement::bound_in(const BoundCell& cell, const PatchMesh& mesh, const Patch& patch, std::span<PatchTriangle* const> triangles, bool quick) const {
     const LanesAsked asked{measure_, 1, false, turn_ != TriangleBound::unasked};
-    TriangleLanes lanes;
-    std::array<TriangleBound, TriangleLanes::size> bounds;
+    std::array<TriangleBound, 2 * TriangleLanes::size> bounds;
     std::vector<CornerData> data;  // of those above the tolerance
     std::vector<TriangleBound> above;
     std::vector<PatchTriangle*> of;
-    for (std::size_t first = 0; first < triangles.size(); first += TriangleLanes::size) {
-        const std::size_t n = std::min(triangles.size() - first, bounds.size());
-        for (std::size_t i = 0; i < bounds.size(); ++i) {
-            const PatchTriangle& t = *triangles[first + std::min(i, n - 1)];
-            for (std::size_t k = 0; k < 3; ++k) lanes.set(i, k, mesh.uv[t.corner[k]], positions_[mesh.vertex[t.corner[k]]]);
-            lanes.slack[i] = mesh.slack_of(t);
-        }
-        bound_lanes(cell.polynomial(), lanes, int(n), asked, bounds.data());
-        for (std::size_t i = 0; i < n; ++i) {
-            PatchTriangle& t = *triangles[first + i];
-            t.proof = bounds[i];
-            if (quick || bounds[i].own(measure_) <= tolerance_ - lanes.slack[i]) continue;
-            of.push_back(&t), above.push_back(bounds[i]), data.push_back(corners_of(mesh, t));
-        }
+    const auto put = [&](LanesOf& to, std::size_t set, std::size_t lane, PatchTriangle& t) {
+        for (std::size_t k = 0; k < 3; ++k) to.sets[set].set(lane, k, mesh.uv[t.corner[k]], positions_[mesh.vertex[t.corner[k]]]);
+        to.sets[set].slack[lane] = mesh.slack_of(t);
+        to.of[set][lane] = &t;
+    };
+    const auto bound = [&](LanesOf& all) {
+        for (std::size_t set = 0; set < all.count; ++set)
+            for (std::size_t i = all.n; i < TriangleLanes::size; ++i) put(all, set, i, *all.of[set][0]);
+        bound_lanes(cell.polynomial(), all.used(), int(all.n), asked, bounds.data());
+        for (std::size_t set = 0; set < all.count; ++set)
+            for (std::size_t i = 0; i < all.n; ++i) {
+                PatchTriangle& t = *all.of[set][i];
+                const TriangleBound& b = bounds[set * TriangleLanes::size + i];
+                t.proof = b;
+                if (quick || b.own(measure_) <= tolerance_ - all.sets[set].slack[i]) continue;
+                of.push_back(&t), above.push_back(b), data.push_back(corners_of(mesh, t));
+            }
+        all.n = 0;
+    };
+    const auto share_box = [&](const PatchTriangle& t, const PatchTriangle& o) {
+        const Vec2 &a = mesh.uv[t.corner[0]], &b = mesh.uv[t.corner[1]], &c = mesh.uv[t.corner[2]], &d = mesh.uv[o.corner[0]], &e = mesh.uv[o.corner[1]], &f = mesh.uv[o.corner[2]];
+        return same_range(a.x, b.x, c.x, d.x, e.x, f.x) && same_range(a.y, b.y, c.y, d.y, e.y, f.y);
+    };
+    LanesOf alone(1), pairs(2);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const bool pair = i + 1 < triangles.size() && share_box(*triangles[i], *triangles[i + 1]);
+        LanesOf& to = pair ? pairs : alone;
+        put(to, 0, to.n, *triangles[i]);
+        if (pair) put(to, 1, to.n, *triangles[++i]);
+        if (++to.n; to.full()) bound(to);
     }
+    for (LanesOf* rest : {&alone, &pairs})
+        if (rest->n > 0) bound(*rest);
     if (of.empty()) return;
     cell.sharpen(patch, data, tolerance_, measure_, turn_, above.data());
     for (std::size_t i = 0; i < of.size(); ++i) of[i]->proof = above[i];
