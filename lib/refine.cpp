@@ -99,6 +99,20 @@ void Refinement::bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t 
     std::array<PatchTriangle*, kTogether> all;
     for (std::size_t i = first; i < last; ++i) all[i - first] = &mesh.triangles[mesh.fresh[i]];
     bound_together(mesh, member, {all.data(), last - first}, false);
+    for (std::size_t i = first; i < last; ++i) mesh.doubtful[i] = is_doubtful(mesh, mesh.triangles[mesh.fresh[i]]);
+}
+
+/// Must flip_and_mark() look at it?
+bool Refinement::is_doubtful(const PatchMesh& mesh, const PatchTriangle& t) const {
+    return !(rounding::up(t.proof.own(measure_) + mesh.slack_of(t)) <= tolerance_) || !turns_little(mesh, t) || mesh.left_out(t);
+}
+
+/// Of the fresh triangles, now bounded; `strips`: some of them anew since.
+void Refinement::keep_doubtful(PatchMesh& mesh, bool strips) const {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < mesh.fresh.size(); ++i)
+        if (strips ? is_doubtful(mesh, mesh.triangles[mesh.fresh[i]]) : mesh.doubtful[i] != 0) mesh.fresh[kept++] = mesh.fresh[i];
+    mesh.fresh.resize(kept);
 }
 
 void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const {
@@ -184,15 +198,18 @@ const BoundCell* Refinement::sharp_cell(const PatchMesh& mesh, std::uint32_t mem
 }
 
 bool Refinement::bound_and_mark() {
+    for (PatchMesh& mesh : patches_) mesh.doubtful.resize(mesh.fresh.size());
     for_all(patches_.size(), [&](std::size_t m) { return (patches_[m].fresh.size() + kTogether - 1) / kTogether; }, [&](std::size_t m, std::size_t i) {
         bound_fresh(patches_[m], std::uint32_t(m), i * kTogether, std::min((i + 1) * kTogether, patches_[m].fresh.size()));
     }, 1);
     std::vector<Round> rounds(patches_.size());
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
+        const bool strips = !patches_[m].fans.empty();
         bound_fans(std::uint32_t(m));
+        keep_doubtful(patches_[m], strips);
         rounds[m] = flip_and_mark(std::uint32_t(m));
     });
-    predicted_ = double(triangle_count());
+    predicted_ = double(all_triangles());
     worst_bound_ = 0, unbounded_ = 0;
     bool done = true;
     for (std::size_t m = 0; m < patches_.size(); ++m) {
@@ -313,6 +330,12 @@ void Refinement::mark(PatchMesh& mesh, std::uint32_t edge) {
         rim_nodes_[e.rim_node].marked = true;
         marked_rims_.push_back(e.rim_node);
     }
+}
+
+std::size_t Refinement::all_triangles() const {
+    std::size_t n = 0;
+    for (const auto& p : patches_) n += p.triangles.size();
+    return n;
 }
 
 std::size_t Refinement::triangle_count() const {

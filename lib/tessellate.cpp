@@ -82,7 +82,7 @@ void refine(Refinement& refinement, const TessellationOptions& options) {
     for (int round = 0; round < max_rounds; ++round) {
         const bool done = refinement.bound_and_mark() && !refinement.mark_with_neighbours();
         if (round == 0) at_first = refinement.triangle_count();
-        if (round > 4 && refinement.has_fans() && refinement.triangle_count() > kGrown * at_first) refinement.break_fans();
+        if (round > 4 && refinement.has_fans() && refinement.more_triangles_than(kGrown * at_first)) refinement.break_fans();
         if (refinement.fans_broken()) return;
         const double needed = refinement.predicted_triangles();
         if (refinement.worst_slack() > options.tolerance)
@@ -99,7 +99,7 @@ void refine(Refinement& refinement, const TessellationOptions& options) {
         // The prediction is good to a small factor once there are some triangles everywhere; while it falls, a few triangles had bounds that said nothing.
         const bool hopeless = round > 8 && needed > 3.0 * double(options.max_triangles) && needed > 0.7 * last_needed;
         last_needed = needed;
-        if (hopeless || refinement.triangle_count() > options.max_triangles) give_up(refinement, options, needed);
+        if (hopeless || refinement.more_triangles_than(options.max_triangles)) give_up(refinement, options, needed);
         const bool lost = done && refinement.mark_lost_edges();
         if (lost && lost_rounds++ > 16)
             throw Error(ErrorKind::budget, "the tolerance " + to_text(options.tolerance) +
