@@ -205,7 +205,8 @@ private:
     std::size_t all_triangles() const;
     void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
     TriangleBound bound_strip(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan, const PatchTriangle& t) const;
-    bool strips_are_better(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan) const;
+    bool sides_bend(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan) const;
+    std::vector<TriangleBound> better_strips(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan) const;
     void bound_fans(std::uint32_t member);
     struct Round {  // what a patch asks for
         std::vector<std::uint32_t> on_rims;  // edges to be marked
