@@ -112,7 +112,8 @@ void Refinement::keep_doubtful(PatchMesh& mesh, bool strips) const {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < mesh.fresh.size(); ++i)
         if (strips ? is_doubtful(mesh, mesh.triangles[mesh.fresh[i]]) : mesh.doubtful[i] != 0) mesh.fresh[kept++] = mesh.fresh[i];
-    mesh.fresh.resize(kept);
+    mesh.fresh.resize(kept), mesh.fresh.shrink_to_fit();
+    mesh.doubtful = {};
 }
 
 void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const {
@@ -290,17 +291,17 @@ double Refinement::worst_bound_of(std::size_t member) const {
 
 bool Refinement::mark_with_neighbours() {
     if (measure_ == Measure::parametric) return false;
+    for_all(patches_.size(), [&](std::size_t m) { return patches_[m].settled.size(); }, [&](std::size_t m, std::size_t i) {
+        PatchMesh& mesh = patches_[m];
+        if (mesh.settled[i] != kUnsettled) return;
+        const RoundedUp bound = bound_of(mesh, std::uint32_t(i));
+        if (bound <= tolerance_) mesh.settled[i] = bound;
+    }, 1024);
     std::vector<std::vector<std::uint32_t>> open(patches_.size());
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
-        for (std::uint32_t i = 0; i < patches_[m].settled.size(); ++i)
-            if (patches_[m].settled[i] == kUnsettled) open[m].push_back(i);
-    });
-    for_all(patches_.size(), [&](std::size_t m) { return open[m].size(); }, [&](std::size_t m, std::size_t i) {
-        const RoundedUp bound = bound_of(patches_[m], open[m][i]);
-        if (bound <= tolerance_) patches_[m].settled[open[m][i]] = bound;
-    });
-    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
         PatchMesh& mesh = patches_[m];
+        for (std::uint32_t i = 0; i < mesh.settled.size(); ++i)
+            if (mesh.settled[i] == kUnsettled) open[m].push_back(i);
         // Turning one edge may have mended the next triangle.
         const auto mended = [&](std::uint32_t i) { return mesh.settled[i] != kUnsettled || bound_of(mesh, i) <= tolerance_ || flip_any(mesh, std::uint32_t(m), i, true); };
         open[m].erase(std::remove_if(open[m].begin(), open[m].end(), mended), open[m].end());
