@@ -179,6 +179,8 @@ public:
     }
     /// The corners of a patch, which are then no longer here.
     void move_corners(std::size_t member, std::vector<Vec2>& uv, std::vector<std::uint32_t>& vertex) { uv = std::move(patches_[member].uv), vertex = std::move(patches_[member].vertex); }
+    /// All positions, which are then no longer here.
+    std::vector<Point> move_positions() { return std::move(positions_); }
     /// Mesh edges on rims with one use: where the surface is open.
     std::vector<std::array<std::uint32_t, 2>> open_edges() const;
     bool collapsed(const PatchEdge& e) const { return e.rim_node != kNone && topology_.rims[rim_nodes_[e.rim_node].rim].collapsed; }

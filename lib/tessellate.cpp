@@ -145,8 +145,9 @@ MeshPart to_part(const Member& member, std::size_t m, bool flipped, const Refine
     return part;
 }
 
-/// Those that are 0 become numbers from 0 on. Their positions.
-std::vector<Point> number_vertices(std::vector<std::uint32_t>& number, const std::vector<Point>& all) {
+/// Those that are 0 become numbers from 0 on. Their positions; the refinement loses its own unless they are to be kept.
+std::vector<Point> number_vertices(std::vector<std::uint32_t>& number, Refinement& refinement, bool keep) {
+    const std::vector<Point>& all = refinement.positions();
     constexpr std::size_t chunk = 1 << 14;
     std::vector<std::uint32_t> first((all.size() + chunk - 1) / chunk + 1, 0);
     const auto each = [&](std::size_t k, auto f) {
@@ -155,6 +156,10 @@ std::vector<Point> number_vertices(std::vector<std::uint32_t>& number, const std
     };
     tbb::parallel_for(std::size_t(0), first.size() - 1, [&](std::size_t k) { each(k, [&](std::size_t) { ++first[k + 1]; }); });
     std::partial_sum(first.begin(), first.end(), first.begin());
+    if (!keep && first.back() == all.size()) {
+        std::iota(number.begin(), number.end(), 0u);
+        return refinement.move_positions();
+    }
     std::vector<Point> kept(first.back());
     tbb::parallel_for(std::size_t(0), first.size() - 1, [&](std::size_t k) {
         each(k, [&, next = first[k]](std::size_t i) mutable {
@@ -174,7 +179,7 @@ Mesh to_mesh(const Composite& surface, const Topology& topology, Refinement& ref
         mesh.parts[m] = to_part(surface[m], m, topology.flipped[m], refinement, options.bounds, number);
         if (!keep) refinement.drop_triangles(m);
     });
-    mesh.positions = number_vertices(number, refinement.positions());
+    mesh.positions = number_vertices(number, refinement, keep);
     tbb::parallel_for(std::size_t(0), surface.size(), [&](std::size_t m) {
         MeshPart& part = mesh.parts[m];
         if (keep) part.uv = refinement.patches()[m].uv, part.vertex = refinement.patches()[m].vertex;
