@@ -199,10 +199,11 @@ private:
     void collect_slack();
     CornerData corners_of(const PatchMesh& mesh, const PatchTriangle& t) const;
     void bound(const PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
-    /// 64 at most: eight at once where polynomials serve; `quick`: less sharply. Uses the list up.
+    /// kTogether at most: eight at once where polynomials serve; `quick`: less sharply. Uses the list up.
     void bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const;
     const BoundCell* sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const;
     void bound_in(const BoundCell& cell, const PatchMesh& mesh, const Patch& patch, std::span<PatchTriangle* const> triangles, bool quick) const;
+    static constexpr std::size_t kTogether = 64;  // triangles that are bounded in one go
     bool is_doubtful(const PatchMesh& mesh, const PatchTriangle& t) const;
     std::size_t all_triangles() const;
     void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
