@@ -173,9 +173,9 @@ template <class Bound, class Side> double with_neighbours(const Bound& t, const 
         const Bound* other = neighbours[k].*bound;
         const double beside = t.beside[k], across = t.across[k];
         const double apart = other && other->quiet ? (length(unit_of(t) - unit_of(*other)) + t.tilt + other->tilt) * (1 + 1e-14) + 1e-15 : 2;
-        const double cosine = 1 - 0.5 * apart * apart;  // at most that of the angle between the planes
+        const double cosine = 1 - 0.5 * apart * apart, secant = 1 / cosine;  // at most that of the angle between the planes
         // Over the neighbour, or where there is none, over this triangle alone.
-        const double beyond = cosine >= 0.95 ? std::max(beside, other->beside[neighbours[k].edge] / cosine) + across * (apart / cosine) : std::hypot(beside, across);
+        const double beyond = cosine >= 0.95 ? std::max(beside, other->beside[neighbours[k].edge] * secant) + across * (apart * secant) : std::hypot(beside, across);
         most = std::max(most, beyond * (1 + 1e-14));
     }
     return std::min<double>(t.parametric, most);

@@ -156,7 +156,7 @@ template <class Use> void in_lanes(const PolynomialCell& cell, std::span<const C
     for (std::size_t first = 0; first < which.size(); first += lanes) {
         const std::size_t n = std::min(lanes, which.size() - first);
         for (std::size_t i = 0; i < lanes; ++i) eight.set(int(i), triangles[std::size_t(which[first + std::min(i, n - 1)])]);
-        bound_lanes(cell, eight, int(n), asked, bounds);
+        bound_lanes(cell, {&eight, 1}, int(n), asked, bounds);
         for (std::size_t i = 0; i < n; ++i) use(which[first + i], bounds[i]);
     }
 }

@@ -3,6 +3,7 @@
 // A formula F has `static constexpr Domain domain` and, on a rectangle, `operator()(u, v)`, on the triangle
 // `operator()(u, v, w)`, templated on the scalars, returning a Vec3. Optional: rect(), breaks_u(), breaks_v(), and with the parameters of
 // operator() homogeneous(), the same as polynomials x, y, z and, when rational, their denominator, which may vanish at corners.
+// points(n, u, v, out) does what operator() does with doubles to the bit, or returns false.
 // A formula that is made of cells between its breaks picks its cell by cell_of(breaks, u).
 #pragma once
 #include <algorithm>
@@ -45,6 +46,8 @@ public:
     PointFrame frame(double u, double v) const override { return run<1>(u, v); }
 
     void points(std::size_t n, const double* u, const double* v, Point* out) const override {
+        if constexpr (requires { f_.points(n, u, v, out); })
+            if (f_.points(n, u, v, out)) return;
         in_packs<0>(n, u, v, [&](std::size_t k, const auto& p, int lane) { out[k] = {p.x.c[0][lane], p.y.c[0][lane], p.z.c[0][lane]}; },
                     [&](std::size_t k) { out[k] = point(u[k], v[k]); });
     }

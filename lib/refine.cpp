@@ -23,8 +23,6 @@ template <class Count, class F> void for_all(std::size_t members, Count count, F
     });
 }
 
-/// Triangles that are bounded in one go.
-constexpr std::size_t kTogether = 64;
 /// Tolerances around a pole, where triangles smaller than one turn as they like: to ask for less there takes ever smaller triangles.
 constexpr double kAtPole = 4;
 /// Slack below this part of the tolerance need not be sharp.
@@ -77,85 +75,19 @@ void Refinement::measure_slack(std::uint32_t member, std::size_t first) {
     }
 }
 
-CornerData Refinement::corners_of(const PatchMesh& mesh, const PatchTriangle& t) const {
-    CornerData data;
-    for (int k = 0; k < 3; ++k) data.uv[k] = mesh.uv[t.corner[k]], data.points[k] = positions_[mesh.vertex[t.corner[k]]];
-    data.slack = mesh.slack_of(t);
-    return data;
-}
-
-void Refinement::bound(const PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide) const {
-    const CornerData data = corners_of(mesh, t);
-    t.proof = BoundCell::bound(surface_[member].patch, t.cell, data, tolerance_ - data.slack, measure_, turn_, decide);
-}
-
-/// Those of one sharp cell after the other go together.
-void Refinement::bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const {
-    std::array<PatchTriangle*, kTogether> all;
-    for (std::size_t i = first; i < last; ++i) all[i - first] = &mesh.triangles[mesh.fresh[i]];
-    bound_together(mesh, member, {all.data(), last - first}, false);
-}
-
-void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const {
-    const Patch& patch = surface_[member].patch;
-    std::array<PatchTriangle*, kTogether> here;
-    for (PatchTriangle*& t : triangles) {
-        if (t->cell->polynomial().exact()) continue;
-        if (const BoundCell* cell = sharp_cell(mesh, member, *t)) t->cell = cell;
-        else bound(mesh, member, *t, quick), t = nullptr;
-    }
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        if (!triangles[i]) continue;
-        const BoundCell* cell = triangles[i]->cell;
-        std::size_t n = 0;
-        for (std::size_t k = i; k < triangles.size(); ++k)
-            if (triangles[k] && triangles[k]->cell == cell) here[n++] = std::exchange(triangles[k], nullptr);
-        bound_in(*cell, mesh, patch, {here.data(), n}, quick);
-    }
-}
-
-/// BoundCell::bound_all() without copies of what passes at once, which is almost everything.
-void Refinement::bound_in(const BoundCell& cell, const PatchMesh& mesh, const Patch& patch, std::span<PatchTriangle* const> triangles, bool quick) const {
-    const LanesAsked asked{measure_, 1, false, turn_ != TriangleBound::unasked};
-    TriangleLanes lanes;
-    std::array<TriangleBound, TriangleLanes::size> bounds;
-    std::vector<CornerData> data;  // of those above the tolerance
-    std::vector<TriangleBound> above;
-    std::vector<PatchTriangle*> of;
-    for (std::size_t first = 0; first < triangles.size(); first += TriangleLanes::size) {
-        const std::size_t n = std::min(triangles.size() - first, bounds.size());
-        for (std::size_t i = 0; i < bounds.size(); ++i) {
-            const PatchTriangle& t = *triangles[first + std::min(i, n - 1)];
-            for (std::size_t k = 0; k < 3; ++k) lanes.set(i, k, mesh.uv[t.corner[k]], positions_[mesh.vertex[t.corner[k]]]);
-            lanes.slack[i] = mesh.slack_of(t);
-        }
-        bound_lanes(cell.polynomial(), lanes, int(n), asked, bounds.data());
-        for (std::size_t i = 0; i < n; ++i) {
-            PatchTriangle& t = *triangles[first + i];
-            t.proof = bounds[i];
-            if (quick || bounds[i].own(measure_) <= tolerance_ - lanes.slack[i]) continue;
-            of.push_back(&t), above.push_back(bounds[i]), data.push_back(corners_of(mesh, t));
-        }
-    }
-    if (of.empty()) return;
-    cell.sharpen(patch, data, tolerance_, measure_, turn_, above.data());
-    for (std::size_t i = 0; i < of.size(); ++i) of[i]->proof = above[i];
-}
-
-const BoundCell* Refinement::sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const {
-    return t.cell->sharp_cell(surface_[member].patch, box_of({mesh.uv[t.corner[0]], mesh.uv[t.corner[1]], mesh.uv[t.corner[2]]}));
-}
-
 bool Refinement::bound_and_mark() {
+    for (PatchMesh& mesh : patches_) mesh.doubtful.resize(mesh.fresh.size());
     for_all(patches_.size(), [&](std::size_t m) { return (patches_[m].fresh.size() + kTogether - 1) / kTogether; }, [&](std::size_t m, std::size_t i) {
         bound_fresh(patches_[m], std::uint32_t(m), i * kTogether, std::min((i + 1) * kTogether, patches_[m].fresh.size()));
     }, 1);
     std::vector<Round> rounds(patches_.size());
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
+        const bool strips = !patches_[m].fans.empty();
         bound_fans(std::uint32_t(m));
+        keep_doubtful(patches_[m], strips);
         rounds[m] = flip_and_mark(std::uint32_t(m));
     });
-    predicted_ = double(triangle_count());
+    predicted_ = double(all_triangles());
     worst_bound_ = 0, unbounded_ = 0;
     bool done = true;
     for (std::size_t m = 0; m < patches_.size(); ++m) {
@@ -236,17 +168,17 @@ double Refinement::worst_bound_of(std::size_t member) const {
 
 bool Refinement::mark_with_neighbours() {
     if (measure_ == Measure::parametric) return false;
+    for_all(patches_.size(), [&](std::size_t m) { return patches_[m].settled.size(); }, [&](std::size_t m, std::size_t i) {
+        PatchMesh& mesh = patches_[m];
+        if (mesh.settled[i] != kUnsettled) return;
+        const RoundedUp bound = bound_of(mesh, std::uint32_t(i));
+        if (bound <= tolerance_) mesh.settled[i] = bound;
+    }, 1024);
     std::vector<std::vector<std::uint32_t>> open(patches_.size());
     tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
-        for (std::uint32_t i = 0; i < patches_[m].settled.size(); ++i)
-            if (patches_[m].settled[i] == kUnsettled) open[m].push_back(i);
-    });
-    for_all(patches_.size(), [&](std::size_t m) { return open[m].size(); }, [&](std::size_t m, std::size_t i) {
-        const RoundedUp bound = bound_of(patches_[m], open[m][i]);
-        if (bound <= tolerance_) patches_[m].settled[open[m][i]] = bound;
-    });
-    tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t m) {
         PatchMesh& mesh = patches_[m];
+        for (std::uint32_t i = 0; i < mesh.settled.size(); ++i)
+            if (mesh.settled[i] == kUnsettled) open[m].push_back(i);
         // Turning one edge may have mended the next triangle.
         const auto mended = [&](std::uint32_t i) { return mesh.settled[i] != kUnsettled || bound_of(mesh, i) <= tolerance_ || flip_any(mesh, std::uint32_t(m), i, true); };
         open[m].erase(std::remove_if(open[m].begin(), open[m].end(), mended), open[m].end());
@@ -276,6 +208,12 @@ void Refinement::mark(PatchMesh& mesh, std::uint32_t edge) {
         rim_nodes_[e.rim_node].marked = true;
         marked_rims_.push_back(e.rim_node);
     }
+}
+
+std::size_t Refinement::all_triangles() const {
+    std::size_t n = 0;
+    for (const auto& p : patches_) n += p.triangles.size();
+    return n;
 }
 
 std::size_t Refinement::triangle_count() const {

@@ -78,6 +78,7 @@ struct PatchMesh {
     bool even_slack = false;            // most_slack serves all
     std::vector<RoundedUp> settled;     // the bound of each triangle with the neighbours that it has now, at most the tolerance; kUnsettled: not known
     std::vector<std::uint32_t> fresh;   // triangles not bounded yet
+    std::vector<char> doubtful;         // of the fresh ones, when they are bounded: above the tolerance, or left out; they are looked at again
     std::vector<std::uint32_t> marked;  // edges to be bisected, those on rims not included
     std::vector<std::unique_ptr<BoundCell>> cells;
     std::vector<double> breaks_u, breaks_v;  // of the patch
@@ -140,6 +141,8 @@ public:
 
     /// Those at poles that are left out of the mesh not included.
     std::size_t triangle_count() const;
+    /// Is that more than `most`? Mostly told without a look at the triangles.
+    bool more_triangles_than(std::size_t most) const { return all_triangles() > most && triangle_count() > most; }
     /// What the last bound_and_mark() found: about how many triangles the tolerance needs, the largest bound above it, and
     /// over how many triangles nothing could be proved.
     double predicted_triangles() const { return predicted_; }
@@ -176,6 +179,8 @@ public:
     }
     /// The corners of a patch, which are then no longer here.
     void move_corners(std::size_t member, std::vector<Vec2>& uv, std::vector<std::uint32_t>& vertex) { uv = std::move(patches_[member].uv), vertex = std::move(patches_[member].vertex); }
+    /// All positions, which are then no longer here.
+    std::vector<Point> move_positions() { return std::move(positions_); }
     /// Mesh edges on rims with one use: where the surface is open.
     std::vector<std::array<std::uint32_t, 2>> open_edges() const;
     bool collapsed(const PatchEdge& e) const { return e.rim_node != kNone && topology_.rims[rim_nodes_[e.rim_node].rim].collapsed; }
@@ -194,29 +199,34 @@ private:
     void collect_slack();
     CornerData corners_of(const PatchMesh& mesh, const PatchTriangle& t) const;
     void bound(const PatchMesh& mesh, std::uint32_t member, PatchTriangle& t, bool decide = false) const;
-    /// 64 at most: eight at once where polynomials serve; `quick`: less sharply. Uses the list up.
+    /// kTogether at most: eight at once where polynomials serve; `quick`: less sharply. Uses the list up.
     void bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const;
     const BoundCell* sharp_cell(const PatchMesh& mesh, std::uint32_t member, const PatchTriangle& t) const;
     void bound_in(const BoundCell& cell, const PatchMesh& mesh, const Patch& patch, std::span<PatchTriangle* const> triangles, bool quick) const;
+    static constexpr std::size_t kTogether = 64;  // triangles that are bounded in one go
+    bool is_doubtful(const PatchMesh& mesh, const PatchTriangle& t) const;
+    std::size_t all_triangles() const;
     void bound_fresh(PatchMesh& mesh, std::uint32_t member, std::size_t first, std::size_t last) const;
     TriangleBound bound_strip(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan, const PatchTriangle& t) const;
-    bool strips_are_better(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan) const;
+    bool sides_bend(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan) const;
+    std::vector<TriangleBound> better_strips(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan) const;
     void bound_fans(std::uint32_t member);
     struct Round {  // what a patch asks for
         std::vector<std::uint32_t> on_rims;  // edges to be marked
         double more = 0, worst = 0;          // triangles that will come of those above the tolerance; their largest bound
         std::size_t unbounded = 0;
     };
+    void keep_doubtful(PatchMesh& mesh, bool strips) const;
     Round flip_and_mark(std::uint32_t member);
     bool may_lose(const PatchMesh& mesh) const;
     bool keeps(const PatchMesh& mesh, const PatchTriangle& t) const;
     struct Flip;
     struct Flips;  // of one triangle
-    Flips flips_of(const PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle) const;
+    void flips_of(const PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, Flips& flips) const;
     void bound_flips(const PatchMesh& mesh, std::uint32_t member, std::span<Flips> all) const;
     const Flip* flip_first(PatchMesh& mesh, std::uint32_t member, Flips& flips, bool with_neighbours) const;
     void flip_fresh(PatchMesh& mesh, std::uint32_t member) const;
-    Flip flip_of(const PatchMesh& mesh, std::uint32_t triangle, int edge) const;
+    bool flip_of(const PatchMesh& mesh, std::uint32_t triangle, int edge, Flip& f) const;
     bool in_vain(const PatchMesh& mesh, std::uint32_t member, const Flip& f) const;
     bool flip(PatchMesh& mesh, const Flip& f, bool with_neighbours) const;
     bool flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t triangle, bool with_neighbours) const;

@@ -30,11 +30,10 @@ struct StripBends {
     double bound() const { return up(up(base + side) / 8); }
 };
 
-/// Strips serve where they begin less than that many tolerances above one, or with less than that part of what else is above it. Where bases bend
-/// in the tangent plane, as around flat poles, triangles away from the pole do better.
-constexpr double kMostExcess = 1.6, kClearly = 25;
 /// Tolerances up to which a sharper bound is tried.
 constexpr double kNear = 8;
+/// Where the bend of a strip's sides is looked at.
+constexpr double kOfHeight[] = {0.25, 0.75};
 
 /// From second derivatives, c[3 4 5] of jets, over a part of the strip.
 template <class Jets> StripBends bends_of(const Strip& s, const Jets& jets) {
@@ -143,17 +142,41 @@ TriangleBound Refinement::bound_strip(const PatchMesh& mesh, std::uint32_t membe
     return proof;
 }
 
-/// Do strips leave less to be split than triangles that are bounded each for itself, all of them fresh? Where the surface is flat around the pole, they do not.
-bool Refinement::strips_are_better(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan) const {
-    std::vector<std::array<double, 2>> excess(fan.triangles.size());
-    tbb::parallel_for(std::size_t(0), excess.size(), [&](std::size_t i) {
-        const PatchTriangle& t = mesh.triangles[fan.triangles[i]];
-        const auto of = [&](double bound) { return std::max(0.0, bound / tolerance_ - 1); };
-        excess[i] = {of(t.proof.own(measure_)), of(bound_strip(mesh, member, fan, t).parametric)};
+/// Do the sides of strips, from the base to the collapsed edge, bend by more than the tolerance? By samples, nothing is proved. Then rows across the
+/// strips would be needed where triangles that are bounded each for itself need few: the surface is flat around the pole, and its bends are tangential.
+bool Refinement::sides_bend(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan) const {
+    const Patch& patch = surface_[member].patch;
+    return std::any_of(fan.triangles.begin(), fan.triangles.end(), [&](std::uint32_t i) {
+        const PatchTriangle& t = mesh.triangles[i];
+        const int k = fan.apex(mesh, t);
+        if (k < 0) return false;
+        const Vec2 &b = mesh.uv[t.corner[std::size_t(k + 1) % 3]], &c = mesh.uv[t.corner[std::size_t(k + 2) % 3]];
+        const Vec2 base{0.5 * b.x + 0.5 * c.x, 0.5 * b.y + 0.5 * c.y};
+        const double height = fan.at - (fan.along_u ? base.y : base.x);
+        return std::any_of(std::begin(kOfHeight), std::end(kOfHeight), [&](double part) {
+            const PointJet x = fan.along_u ? patch.jet(base.x, base.y + part * height) : patch.jet(base.x + part * height, base.y);
+            const int p = fan.along_u ? 0 : 2;
+            const Point half{x.x.coefficient(p, 2 - p), x.y.coefficient(p, 2 - p), x.z.coefficient(p, 2 - p)};
+            return 0.25 * height * height * length(half) > tolerance_;
+        });
     });
-    double each = 0, strips = 0, worst = 0;
-    for (const auto& e : excess) each += e[0], strips += e[1], worst = std::max(worst, e[1]);
-    return strips <= each && (worst <= kMostExcess || kClearly * strips <= each);
+}
+
+/// The strips of a fan whose triangles are all fresh, where they leave less to be split than triangles that are bounded each for itself; else nothing.
+std::vector<TriangleBound> Refinement::better_strips(const PatchMesh& mesh, std::uint32_t member, const PoleFan& fan) const {
+    const auto excess = [&](double bound) { return std::max(0.0, bound / tolerance_ - 1); };
+    double each = 0;
+    for (const auto i : fan.triangles) each += excess(mesh.triangles[i].proof.own(measure_));
+    if (each == 0 || sides_bend(mesh, member, fan)) return {};
+    std::vector<TriangleBound> strips(fan.triangles.size());
+    tbb::parallel_for(std::size_t(0), strips.size(), [&](std::size_t i) { strips[i] = bound_strip(mesh, member, fan, mesh.triangles[fan.triangles[i]]); });
+    double all = 0;
+    for (std::size_t i = 0; i < strips.size(); ++i) {
+        const int apex = fan.apex(mesh, mesh.triangles[fan.triangles[i]]);
+        all += excess(strips[i].parametric);
+        if (strips[i].parametric > tolerance_ && strips[i].worst_edge != (apex + 1) % 3) return {};  // a side
+    }
+    return all <= each ? strips : std::vector<TriangleBound>();
 }
 
 /// Bounds the fresh triangles of the fans by their strips. A fan that is none any more is given up: its triangles are bounded each for itself.
@@ -170,8 +193,12 @@ void Refinement::bound_fans(std::uint32_t member) {
         list.erase(std::unique(list.begin(), list.end()), list.end());
     }
     std::vector<char> good;
+    std::vector<std::vector<TriangleBound>> first(mesh.fans.size());  // strips of a fan that is chosen now
     for (PoleFan& f : mesh.fans) {
-        good.push_back(f.is_graph(mesh) && (f.settled || strips_are_better(mesh, member, f)));
+        auto& strips = first[good.size()];
+        const bool graph = f.is_graph(mesh);
+        if (graph && !f.settled) strips = better_strips(mesh, member, f);
+        good.push_back(graph && (f.settled || !strips.empty()));
         mesh.fan_broken |= f.settled && !good.back();
         f.settled = true;
     }
@@ -180,7 +207,7 @@ void Refinement::bound_fans(std::uint32_t member) {
         tbb::parallel_for(std::size_t(0), f.triangles.size(), [&](std::size_t i) {
             PatchTriangle& t = mesh.triangles[f.triangles[i]];
             const bool is_fresh = std::binary_search(fresh.begin(), fresh.end(), f.triangles[i]);
-            if (good[k] && is_fresh) t.proof = bound_strip(mesh, member, f, t);
+            if (good[k] && is_fresh) t.proof = first[k].empty() ? bound_strip(mesh, member, f, t) : first[k][i];
             if (!good[k] && !is_fresh) bound(mesh, member, t);
         });
         if (good[k]) continue;

@@ -31,7 +31,7 @@ const BoundCell* PatchMesh::root_of(const std::array<std::uint32_t, 3>& corner) 
 
 /// A diagonal, and the two triangles beside it if it were the other one.
 struct Refinement::Flip {
-    std::uint32_t i = kNone, j = kNone, diagonal = kNone, from = 0, to = 0;  // kNone: it cannot be turned
+    std::uint32_t i = kNone, j = kNone, diagonal = kNone, from = 0, to = 0;
     PatchTriangle left, right;
     bool together = false;  // polynomials serve both
 };
@@ -40,25 +40,25 @@ struct Refinement::Flips {
     std::size_t count = 0;
 };
 
-/// Edge k of a triangle, turned into the other diagonal of the quadrilateral around it.
-Refinement::Flip Refinement::flip_of(const PatchMesh& mesh, std::uint32_t i, int k) const {
+/// Edge k of a triangle, turned into the other diagonal of the quadrilateral around it; false where that cannot be.
+bool Refinement::flip_of(const PatchMesh& mesh, std::uint32_t i, int k, Flip& f) const {
     const PatchTriangle& t = mesh.triangles[i];
     const auto diagonal = t.edge[k];
     const PatchEdge& e = mesh.edges[diagonal];
     const auto j = e.side[0] == i ? e.side[1] : e.side[0];
-    if (e.rim_node != kNone || e.marked || j == kNone || mesh.on_break(e)) return {};
+    if (e.rim_node != kNone || e.marked || j == kNone || mesh.on_break(e)) return false;
     const PatchTriangle& o = mesh.triangles[j];
-    const int m = int(std::find(o.edge.begin(), o.edge.end(), diagonal) - o.edge.begin());
+    const int m = (o.edge[1] == diagonal) + 2 * (o.edge[2] == diagonal);
     const auto a = t.corner[k], b = t.corner[(k + 1) % 3], c = t.corner[(k + 2) % 3], d = o.corner[(m + 2) % 3];
-    if (mesh.vertex[c] == mesh.vertex[d] || mesh.left_out(t) || mesh.left_out(o) || mesh.in_fan(t) || mesh.in_fan(o)) return {};
     const auto area = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) { return twice_area(mesh.uv[p], mesh.uv[q], mesh.uv[r]); };
     const double thin = 0.02 * (area(a, b, c) + area(b, a, d));  // both triangles have some area: the quadrilateral is convex
-    if (!(area(a, d, c) > thin && area(d, b, c) > thin)) return {};
-    Flip f{i, j, diagonal, c, d, {}, {}};
+    if (!(area(a, d, c) > thin && area(d, b, c) > thin)) return false;
+    if (mesh.vertex[c] == mesh.vertex[d] || mesh.left_out(t) || mesh.left_out(o) || mesh.in_fan(t) || mesh.in_fan(o)) return false;
+    f.i = i, f.j = j, f.diagonal = diagonal, f.from = c, f.to = d;
     f.left.corner = {a, d, c}, f.left.edge = {o.edge[(m + 1) % 3], diagonal, t.edge[(k + 2) % 3]};
     f.right.corner = {d, b, c}, f.right.edge = {o.edge[(m + 2) % 3], t.edge[(k + 1) % 3], diagonal};
     for (PatchTriangle* n : {&f.left, &f.right}) n->cell = mesh.root_of(n->corner);
-    return f;
+    return true;
 }
 
 bool Refinement::keeps(const PatchMesh& mesh, const PatchTriangle& t) const {
@@ -102,16 +102,15 @@ bool Refinement::in_vain(const PatchMesh& mesh, std::uint32_t member, const Flip
 }
 
 /// The worst edge first.
-Refinement::Flips Refinement::flips_of(const PatchMesh& mesh, std::uint32_t member, std::uint32_t i) const {
+void Refinement::flips_of(const PatchMesh& mesh, std::uint32_t member, std::uint32_t i, Flips& found) const {
     const int worst = mesh.triangles[i].proof.worst_edge;
-    Flips found;
+    found.count = 0;
     for (int k = 0; k < 3; ++k) {
-        Flip f = flip_of(mesh, i, (worst + k) % 3);
-        if (f.i == kNone) continue;
+        Flip& f = found.list[found.count];
+        if (!flip_of(mesh, i, (worst + k) % 3, f)) continue;
         f.together = sharp_cell(mesh, member, f.left) && sharp_cell(mesh, member, f.right);
-        if (!(f.together && in_vain(mesh, member, f))) found.list[found.count++] = f;
+        found.count += !(f.together && in_vain(mesh, member, f));
     }
-    return found;
 }
 
 /// Where polynomials serve, all that can be turned are bounded together.
@@ -139,7 +138,8 @@ const Refinement::Flip* Refinement::flip_first(PatchMesh& mesh, std::uint32_t me
 }
 
 bool Refinement::flip_any(PatchMesh& mesh, std::uint32_t member, std::uint32_t i, bool with_neighbours) const {
-    Flips flips = flips_of(mesh, member, i);
+    Flips flips;
+    flips_of(mesh, member, i, flips);
     bound_flips(mesh, member, {&flips, 1});
     return flip_first(mesh, member, flips, with_neighbours) != nullptr;
 }
@@ -153,7 +153,7 @@ void Refinement::flip_fresh(PatchMesh& mesh, std::uint32_t member) const {
     for (std::size_t next = 0; next < mesh.fresh.size();) {
         std::size_t n = 0, changed = 0;
         for (; next < mesh.fresh.size() && n < kFlipsTogether; ++next)
-            if (const auto i = mesh.fresh[next]; fails(i)) of[n] = i, ahead[n++] = flips_of(mesh, member, i);
+            if (const auto i = mesh.fresh[next]; fails(i)) of[n] = i, flips_of(mesh, member, i, ahead[n++]);
         bound_flips(mesh, member, {ahead.data(), n});
         const auto is_touched = [&](std::uint32_t i) { return std::find(touched.begin(), touched.begin() + changed, i) != touched.begin() + changed; };
         for (std::size_t k = 0; k < n; ++k) {
@@ -161,7 +161,7 @@ void Refinement::flip_fresh(PatchMesh& mesh, std::uint32_t member) const {
             bool stale = is_touched(of[k]);
             for (const auto e : mesh.triangles[of[k]].edge) stale = stale || is_touched(mesh.edges[e].side[0]) || is_touched(mesh.edges[e].side[1]);
             if (stale) {
-                ahead[k] = flips_of(mesh, member, of[k]);
+                flips_of(mesh, member, of[k], ahead[k]);
                 bound_flips(mesh, member, {&ahead[k], 1});
             }
             if (const Flip* f = flip_first(mesh, member, ahead[k], false)) touched[changed++] = f->i, touched[changed++] = f->j;

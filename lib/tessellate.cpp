@@ -82,7 +82,7 @@ void refine(Refinement& refinement, const TessellationOptions& options) {
     for (int round = 0; round < max_rounds; ++round) {
         const bool done = refinement.bound_and_mark() && !refinement.mark_with_neighbours();
         if (round == 0) at_first = refinement.triangle_count();
-        if (round > 4 && refinement.has_fans() && refinement.triangle_count() > kGrown * at_first) refinement.break_fans();
+        if (round > 4 && refinement.has_fans() && refinement.more_triangles_than(kGrown * at_first)) refinement.break_fans();
         if (refinement.fans_broken()) return;
         const double needed = refinement.predicted_triangles();
         if (refinement.worst_slack() > options.tolerance)
@@ -99,7 +99,7 @@ void refine(Refinement& refinement, const TessellationOptions& options) {
         // The prediction is good to a small factor once there are some triangles everywhere; while it falls, a few triangles had bounds that said nothing.
         const bool hopeless = round > 8 && needed > 3.0 * double(options.max_triangles) && needed > 0.7 * last_needed;
         last_needed = needed;
-        if (hopeless || refinement.triangle_count() > options.max_triangles) give_up(refinement, options, needed);
+        if (hopeless || refinement.more_triangles_than(options.max_triangles)) give_up(refinement, options, needed);
         const bool lost = done && refinement.mark_lost_edges();
         if (lost && lost_rounds++ > 16)
             throw Error(ErrorKind::budget, "the tolerance " + to_text(options.tolerance) +
@@ -145,8 +145,9 @@ MeshPart to_part(const Member& member, std::size_t m, bool flipped, const Refine
     return part;
 }
 
-/// Those that are 0 become numbers from 0 on. Their positions.
-std::vector<Point> number_vertices(std::vector<std::uint32_t>& number, const std::vector<Point>& all) {
+/// Those that are 0 become numbers from 0 on. Their positions; the refinement loses its own unless they are to be kept.
+std::vector<Point> number_vertices(std::vector<std::uint32_t>& number, Refinement& refinement, bool keep) {
+    const std::vector<Point>& all = refinement.positions();
     constexpr std::size_t chunk = 1 << 14;
     std::vector<std::uint32_t> first((all.size() + chunk - 1) / chunk + 1, 0);
     const auto each = [&](std::size_t k, auto f) {
@@ -155,6 +156,10 @@ std::vector<Point> number_vertices(std::vector<std::uint32_t>& number, const std
     };
     tbb::parallel_for(std::size_t(0), first.size() - 1, [&](std::size_t k) { each(k, [&](std::size_t) { ++first[k + 1]; }); });
     std::partial_sum(first.begin(), first.end(), first.begin());
+    if (!keep && first.back() == all.size()) {
+        std::iota(number.begin(), number.end(), 0u);
+        return refinement.move_positions();
+    }
     std::vector<Point> kept(first.back());
     tbb::parallel_for(std::size_t(0), first.size() - 1, [&](std::size_t k) {
         each(k, [&, next = first[k]](std::size_t i) mutable {
@@ -174,7 +179,7 @@ Mesh to_mesh(const Composite& surface, const Topology& topology, Refinement& ref
         mesh.parts[m] = to_part(surface[m], m, topology.flipped[m], refinement, options.bounds, number);
         if (!keep) refinement.drop_triangles(m);
     });
-    mesh.positions = number_vertices(number, refinement.positions());
+    mesh.positions = number_vertices(number, refinement, keep);
     tbb::parallel_for(std::size_t(0), surface.size(), [&](std::size_t m) {
         MeshPart& part = mesh.parts[m];
         if (keep) part.uv = refinement.patches()[m].uv, part.vertex = refinement.patches()[m].vertex;

@@ -18,16 +18,21 @@ Point edge_position(const Patch& patch, int edge, double t) {
     return patch.point(p.x, p.y);
 }
 
-/// At kSamples + 1 parameters from low to high.
-std::vector<Point> edge_positions(const Patch& patch, int edge, double low, double high) {
-    std::array<double, kSamples + 1> u, v;
-    for (int i = 0; i <= kSamples; ++i) {
-        const Vec2 p = patch.edge_point(edge, i == kSamples ? high : low + (high - low) * i / kSamples);
-        u[std::size_t(i)] = p.x, v[std::size_t(i)] = p.y;
+template <std::size_t N> std::array<Point, N> edge_positions(const Patch& patch, int edge, const std::array<double, N>& t) {
+    std::array<double, N> u, v;
+    for (std::size_t i = 0; i < N; ++i) {
+        const Vec2 p = patch.edge_point(edge, t[i]);
+        u[i] = p.x, v[i] = p.y;
     }
-    std::vector<Point> x(u.size());
-    patch.points(u.size(), u.data(), v.data(), x.data());
+    std::array<Point, N> x;
+    patch.points(N, u.data(), v.data(), x.data());
     return x;
+}
+/// At kSamples + 1 parameters from low to high.
+std::array<Point, kSamples + 1> edge_positions(const Patch& patch, int edge, double low, double high) {
+    std::array<double, kSamples + 1> t;
+    for (int i = 0; i <= kSamples; ++i) t[std::size_t(i)] = i == kSamples ? high : low + (high - low) * i / kSamples;
+    return edge_positions(patch, edge, t);
 }
 
 /// Points closer than the tolerance become one node; the earliest keeps its position.
@@ -73,7 +78,7 @@ struct NodeOnEdge {
 };
 
 struct EdgeShape {
-    std::vector<Point> samples;
+    std::array<Point, kSamples + 1> samples;
     Point low, high;
     double step = 0;  // the longest between samples
     bool collapsed = true;
@@ -84,7 +89,7 @@ EdgeShape sample_edge(const Patch& patch, int edge, double tolerance) {
     EdgeShape s;
     s.samples = edge_positions(patch, edge, 0, 1);
     s.low = s.high = s.samples[0];
-    for (int i = 0; i < kSamples; ++i) s.step = std::max(s.step, distance(s.samples[i], s.samples[i + 1]));
+    for (std::size_t i = 0; i < kSamples; ++i) s.step = std::max(s.step, distance(s.samples[i], s.samples[i + 1]));
     for (const auto& p : s.samples) {
         s.collapsed = s.collapsed && distance(p, s.samples[0]) <= tolerance;
         for (int axis = 0; axis < 3; ++axis) s.low[axis] = std::min(s.low[axis], p[axis]), s.high[axis] = std::max(s.high[axis], p[axis]);
@@ -206,7 +211,7 @@ std::vector<char> orient(const Composite& surface, const Topology& topology) {
 
 double nearest_on_edge(const Patch& patch, int edge, const Point& target, double low, double high) {
     const auto far = [&](double t) { return distance(edge_position(patch, edge, t), target); };
-    const std::vector<Point> samples = edge_positions(patch, edge, low, high);
+    const auto samples = edge_positions(patch, edge, low, high);
     double best = low, least = distance(samples[0], target);
     for (int i = 1; i <= kSamples; ++i)
         if (const double d = distance(samples[std::size_t(i)], target); d < least) best = i == kSamples ? high : low + (high - low) * i / kSamples, least = d;
@@ -214,12 +219,12 @@ double nearest_on_edge(const Patch& patch, int edge, const Point& target, double
     const double step = (high - low) / kSamples, a = std::max(low, best - step), b = std::min(high, best + step);
     for (int i = 0; i < 40; ++i) {
         const double h = 1e-6 * (high - low), left = std::max(a, best - h), right = std::min(b, best + h);
-        const Point d = (edge_position(patch, edge, right) - edge_position(patch, edge, left)) / (right - left);
+        const auto [before, here, after] = edge_positions<3>(patch, edge, {left, best, right});
+        const Point d = (after - before) / (right - left);
         const double dd = dot(d, d);
         if (!(dd > 0)) break;
-        const double next = std::clamp(best + dot(target - edge_position(patch, edge, best), d) / dd, a, b);
-        const double moved = std::fabs(next - best);
-        if (far(next) <= least) best = next, least = far(next);
+        const double next = std::clamp(best + dot(target - here, d) / dd, a, b), moved = std::fabs(next - best);
+        if (const double d = far(next); d <= least) best = next, least = d;
         if (moved <= 1e-16 * (1 + std::fabs(best))) break;
     }
     return best;

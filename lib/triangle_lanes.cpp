@@ -18,19 +18,19 @@ constexpr double kBinomial[6][6] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}, {1, 4,
 
 }  // namespace
 
-void bound_lanes(Isa isa, const PolynomialCell& cell, const TriangleLanes& triangles, int n, const LanesAsked& asked, TriangleBound* bounds) {
+void bound_lanes(Isa isa, const PolynomialCell& cell, std::span<const TriangleLanes> sets, int n, const LanesAsked& asked, TriangleBound* bounds) {
     const PolynomialForm form = cell.form();
 #ifdef ISOPARM_ISA_LOOPS
-    if (isa == Isa::avx512) return avx512::bound_lanes(form, triangles, n, asked, bounds);
-    if (isa == Isa::avx2) return avx2::bound_lanes(form, triangles, n, asked, bounds);
+    if (isa == Isa::avx512) return avx512::bound_lanes(form, sets.data(), int(sets.size()), n, asked, bounds);
+    if (isa == Isa::avx2) return avx2::bound_lanes(form, sets.data(), int(sets.size()), n, asked, bounds);
 #endif
     static_cast<void>(isa);
-    baseline::bound_lanes(form, triangles, n, asked, bounds);
+    baseline::bound_lanes(form, sets.data(), int(sets.size()), n, asked, bounds);
 }
 
-void bound_lanes(const PolynomialCell& cell, const TriangleLanes& triangles, int n, const LanesAsked& asked, TriangleBound* bounds) {
+void bound_lanes(const PolynomialCell& cell, std::span<const TriangleLanes> sets, int n, const LanesAsked& asked, TriangleBound* bounds) {
     static const Isa isa = chosen_isa();
-    bound_lanes(isa, cell, triangles, n, asked, bounds);
+    bound_lanes(isa, cell, sets, n, asked, bounds);
 }
 
 }  // namespace isoparm

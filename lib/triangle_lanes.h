@@ -3,6 +3,8 @@
 // The loops exist once in the source (triangle_lanes_loops.inc) and once for each instruction set in the binary; which one runs is chosen at run
 // time (batch.h). All give the bits of bound_triangle() with the cell's own SecondDerivatives over the triangle's box.
 #pragma once
+#include <span>
+
 #include "batch.h"
 #include "bound.h"
 #include "second_derivatives.h"
@@ -31,9 +33,10 @@ struct LanesAsked {
     bool turns = false;  // turn as well
 };
 
-/// The first n triangles. Thread-safe.
-void bound_lanes(const PolynomialCell& cell, const TriangleLanes& triangles, int n, const LanesAsked& asked, TriangleBound* bounds);
+/// The first n triangles of each set: triangle i of every set must have the box of triangle i of the first one, whose model serves them all.
+/// Those of set s begin at bounds[size s]. Thread-safe.
+void bound_lanes(const PolynomialCell& cell, std::span<const TriangleLanes> sets, int n, const LanesAsked& asked, TriangleBound* bounds);
 /// With the loops of one instruction set, which must run here.
-void bound_lanes(Isa isa, const PolynomialCell& cell, const TriangleLanes& triangles, int n, const LanesAsked& asked, TriangleBound* bounds);
+void bound_lanes(Isa isa, const PolynomialCell& cell, std::span<const TriangleLanes> sets, int n, const LanesAsked& asked, TriangleBound* bounds);
 
 }  // namespace isoparm

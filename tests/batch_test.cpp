@@ -12,6 +12,7 @@
 #include "patches/cone.h"
 #include "patches/coons.h"
 #include "patches/tensor_bezier.h"
+#include "patches/tensor_bezier_points.h"
 #include "run_program.h"
 #include "samples.h"
 
@@ -222,6 +223,54 @@ TEST(Batch, BezierCellsOfBezierPatchesAreTheirPoles) {
     ASSERT_EQ(cells[0].poles.size(), net.size() * net[0].size());
     for (std::size_t k = 0; k < cells[0].poles.size(); ++k) EXPECT_LT(distance(cells[0].poles[k], net[k / net[0].size()][k % net[0].size()]), 1e-13);
     EXPECT_TRUE(cells[0].weights.empty());
+}
+
+/// Points by lanes, alone, some or many, are those of the formula: of all degrees, rational or not, and across the breaks of B-splines.
+TEST(Batch, BezierPointsAreTheFormulasToTheBit) {
+    Random random(73000);
+    const auto equal = [](const Point& a, const Point& b) { return std::bit_cast<std::array<std::uint64_t, 3>>(a) == std::bit_cast<std::array<std::uint64_t, 3>>(b); };
+    std::size_t compared = 0;
+    for (int round = 0; round < 200; ++round) {
+        const int p = random.integer(1, 9), q = random.integer(0, 1) == 0 ? p : random.integer(1, 9);
+        const bool rational = random.integer(0, 1) == 0, cells = random.integer(0, 3) == 0;
+        const std::size_t rows = std::size_t(p) + 1 + 2 * cells, columns = std::size_t(q) + 1 + cells;
+        Grid<Point> points(rows, std::vector<Point>(columns));
+        Grid<double> weights(rational ? rows : 0, std::vector<double>(columns));
+        for (auto& row : points)
+            for (Point& x : row) x = {random.number() - 0.5, random.number(), 3 * random.number()};
+        for (auto& row : weights)
+            for (double& w : row) w = 0.5 + random.number();
+        const auto knots = [](int degree, int inner) {
+            std::vector<double> k(std::size_t(degree) + 1, 0.0);
+            for (int i = 1; i <= inner; ++i) k.push_back(0.3 * i);
+            k.insert(k.end(), std::size_t(degree) + 1, 1.0);
+            return k;
+        };
+        const Patch patch = cells ? make_bspline_patch(p, q, knots(p, 2), knots(q, 1), points, weights) : make_bezier_patch(points, weights);
+        const std::size_t n = std::size_t(random.integer(1, 40));
+        std::vector<double> u(n), v(n);
+        for (std::size_t k = 0; k < n; ++k) u[k] = random.integer(0, 9) == 0 ? 0.3 : random.number(), v[k] = random.integer(0, 9) == 0 ? 1 : random.number();
+        if (cells) std::sort(u.begin(), u.end());
+        std::vector<Point> found(n);
+        patch.points(n, u.data(), v.data(), found.data());
+        for (std::size_t k = 0; k < n; ++k) EXPECT_TRUE(equal(found[k], patch.point(u[k], v[k]))) << round << ", point " << k;
+        compared += n;
+        if (cells || std::max(p, q) > BezierCoefficients::max_degree) continue;
+        std::vector<double> c;
+        for (int axis = 0; axis < (rational ? 4 : 3); ++axis)
+            for (int i = 0; i <= p; ++i)
+                for (int j = 0; j <= q; ++j) {
+                    const double w = rational ? weights[std::size_t(i)][std::size_t(j)] : 1;
+                    c.push_back(axis == 3 ? w : w * points[std::size_t(i)][std::size_t(j)][axis]);
+                }
+        for (const Isa isa : isas_here()) {
+            bezier_points(isa, {p, q, rational, 0, 1, 0, 1, c.data()}, n, u.data(), v.data(), found.data());
+            for (std::size_t k = 0; k < n; ++k)
+                if (!rational) EXPECT_TRUE(equal(found[k], patch.point(u[k], v[k]))) << to_text(isa) << ", " << round << ", point " << k;
+                else EXPECT_LT(distance(found[k], patch.point(u[k], v[k])), 1e-14) << to_text(isa) << ", " << round << ", point " << k;  // w x is rounded
+        }
+    }
+    EXPECT_GT(compared, 2000u);
 }
 
 TEST(Batch, RefusesArraysOfOtherSizes) {

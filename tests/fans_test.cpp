@@ -75,6 +75,19 @@ TEST(Fans, ConesTakeAsManyTrianglesAsTheirCurveHasChords) {
     expect_within(cone, together);
 }
 
+/// At a coarse tolerance too: there single triangles would take more than at a finer one.
+TEST(Fans, FinerConesHaveMoreTriangles) {
+    const Composite cone{{"cone", make_cone(make_bezier({{0, 0, 0}, {1, 2, 0.3}, {3, 2, -0.2}, {4, 0, 0}}), {1, 0, 3})}};
+    std::size_t coarser = 0;
+    for (const double relative : {1e-1, 3e-2, 1e-2, 3e-3, 1e-3}) {
+        const Tessellation t = meshed(cone, relative, true);
+        EXPECT_GT(t.mesh.triangle_count(), coarser) << relative;
+        EXPECT_LT(double(t.mesh.triangle_count()), 3 / std::sqrt(relative)) << relative;
+        expect_within(cone, t);
+        coarser = t.mesh.triangle_count();
+    }
+}
+
 TEST(Fans, KeepTheirBoundOnEveryEdgeAndInBothQualities) {
     Random random(7);
     for (int edge = 0; edge < 4; ++edge)

@@ -266,7 +266,7 @@ TEST(Models, LanesGiveTheBitsOfOneTriangleAtATime) {
         for (const Isa isa : all_isas) {
             if (!runs(isa)) continue;
             std::array<TriangleBound, TriangleLanes::size> bounds;
-            bound_lanes(isa, model, lanes, TriangleLanes::size, asked, bounds.data());
+            bound_lanes(isa, model, {&lanes, 1}, TriangleLanes::size, asked, bounds.data());
             for (std::size_t i = 0; i < data.size(); ++i) {
                 const SecondDerivatives m = asked.parts > 1 ? model(box_of(data[i].uv), asked.parts) : model(box_of(data[i].uv));
                 const TriangleBound one = m.bounded ? TriangleShape(m, data[i]).bound(asked.measure, false, true, true) : TriangleBound{};

@@ -114,7 +114,8 @@ bool same(const TriangleBound& a, const TriangleBound& b) {
     return all && a.worst_edge == b.worst_edge && a.worst_turn == b.worst_turn && a.worst_across == b.worst_across;
 }
 
-/// So the proofs of the one are those of the other. On all instruction sets that run here, in every lane, whatever the others hold.
+/// So the proofs of the one are those of the other. On all instruction sets that run here, in every lane, whatever the others hold, alone or with a
+/// second triangle in the same box.
 TEST(Soundness, LanesGiveTheBitsOfOneTriangleAtATime) {
     std::size_t compared = 0, quiet = 0;
     for (const PatchType& type : patch_types())
@@ -126,26 +127,31 @@ TEST(Soundness, LanesGiveTheBitsOfOneTriangleAtATime) {
             if (!cell.exists()) continue;
             for (int round = 0; round < 12; ++round) {
                 const int n = random.integer(1, TriangleLanes::size);
-                std::array<CornerData, TriangleLanes::size> data;
-                TriangleLanes lanes;
+                const std::size_t count = round % 2 + 1;
+                std::array<std::array<CornerData, TriangleLanes::size>, 2> sets;
+                std::array<TriangleLanes, 2> lanes;
                 for (int i = 0; i < n; ++i) {
+                    auto& data = sets[0];
                     data[i].uv = random_triangle(random, patch, box);
                     if (random.integer(0, 20) == 0) data[i].uv[2] = data[i].uv[1];  // no area
                     for (int k = 0; k < 3; ++k) data[i].points[k] = patch.point(data[i].uv[k].x, data[i].uv[k].y);
                     data[i].slack = 1e-13 * random.number();
-                    lanes.set(i, data[i]);
+                    sets[1][i] = {{Vec2{data[i].uv[0].x, data[i].uv[1].y}, Vec2{data[i].uv[1].x, data[i].uv[2].y}, Vec2{data[i].uv[2].x, data[i].uv[0].y}}, data[i].points, 0};
+                    for (std::size_t set = 0; set < count; ++set) lanes[set].set(i, sets[set][i]);
                 }
                 const LanesAsked asked{random.integer(0, 3) == 0 ? Measure::parametric : Measure::geometric, random.integer(0, 1) == 0 ? 1 : 3, random.integer(0, 2) == 0, random.integer(0, 1) == 0};
                 for (const Isa isa : all_isas) {
                     if (!runs(isa)) continue;
-                    std::array<TriangleBound, TriangleLanes::size> bounds;
-                    bound_lanes(isa, cell, lanes, n, asked, bounds.data());
-                    for (int i = 0; i < n; ++i) {
-                        const SecondDerivatives model = asked.parts > 1 ? cell(box_of(data[i].uv), asked.parts) : cell(box_of(data[i].uv));
-                        const TriangleBound one = model.bounded ? TriangleShape(model, data[i]).bound(asked.measure, asked.least, asked.turns, true) : TriangleBound{};
-                        EXPECT_TRUE(same(bounds[i], one)) << type.name << ", " << to_text(isa) << ", seed " << seed << ", lane " << i;
-                        ++compared, quiet += one.quiet;
-                    }
+                    std::array<TriangleBound, 2 * TriangleLanes::size> bounds;
+                    bound_lanes(isa, cell, {lanes.data(), count}, n, asked, bounds.data());
+                    for (std::size_t set = 0; set < count; ++set)
+                        for (int i = 0; i < n; ++i) {
+                            const CornerData& data = sets[set][i];
+                            const SecondDerivatives model = asked.parts > 1 ? cell(box_of(data.uv), asked.parts) : cell(box_of(data.uv));
+                            const TriangleBound one = model.bounded ? TriangleShape(model, data).bound(asked.measure, asked.least, asked.turns, true) : TriangleBound{};
+                            EXPECT_TRUE(same(bounds[set * TriangleLanes::size + i], one)) << type.name << ", " << to_text(isa) << ", seed " << seed << ", set " << set << ", lane " << i;
+                            ++compared, quiet += one.quiet;
+                        }
                 }
             }
         }

@@ -1,10 +1,12 @@
 #include "patches/tensor_bezier.h"
 
+#include <algorithm>
 #include <array>
 
 #include "curves/bspline.h"
 #include "error.h"
 #include "patch_model.h"
+#include "patches/tensor_bezier_points.h"
 
 namespace isoparm {
 namespace {
@@ -53,6 +55,8 @@ struct Coordinate {
 struct Cell {
     double u0, u1, v0, v1;
     std::vector<Coordinate> n;  // x, y, z (weighted), and the denominator when rational
+    std::vector<double> all;    // the coefficients of these, one after the other
+    BezierCoefficients coefficients() const { return {int(n[0].c.size()) - 1, int(n[0].c[0].size()) - 1, n.size() == 4, u0, u1, v0, v1, all.data()}; }
 };
 
 struct TensorBezier {
@@ -72,6 +76,19 @@ struct TensorBezier {
     std::vector<Polynomial> homogeneous(const Polynomial& u, const Polynomial& v) const {
         const Cell& cell = cell_at(u, v);
         return coordinates(cell, local(u, cell.u0, cell.u1), local(v, cell.v0, cell.v1));
+    }
+
+    /// The same bits, faster; false where degrees are too high for that.
+    bool points(std::size_t n, const double* u, const double* v, Point* out) const {
+        if (std::max(cells[0].n[0].c.size(), cells[0].n[0].c[0].size()) > BezierCoefficients::max_degree + 1) return false;
+        for (std::size_t first = 0; first < n;) {
+            const Cell& cell = cell_at(u[first], v[first]);
+            std::size_t last = cells.size() == 1 ? n : first + 1;
+            while (last < n && &cell_at(u[last], v[last]) == &cell) ++last;
+            bezier_points(chosen_isa(), cell.coefficients(), last - first, u + first, v + first, out + first);
+            first = last;
+        }
+        return true;
     }
 
 private:
@@ -144,7 +161,7 @@ void check_shape(const Grid<Point>& points, const Grid<double>& weights) {
 
 /// Bezier coefficients of a cell, x_k = sum_ij rows_u rows_v w_ij x_ij, as intervals that hold the exact numbers.
 Cell make_cell(const BezierSpan& su, const BezierSpan& sv, const Grid<Point>& points, const Grid<double>& weights) {
-    Cell cell{su.begin, su.end, sv.begin, sv.end, {}};
+    Cell cell{su.begin, su.end, sv.begin, sv.end, {}, {}};
     for (int axis = 0; axis < (weights.empty() ? 3 : 4); ++axis) {
         Grid<Interval> c(su.rows.size(), std::vector<Interval>(sv.rows.size(), Interval(0)));
         for (std::size_t i = 0; i < su.rows.size(); ++i)
@@ -159,6 +176,7 @@ Cell make_cell(const BezierSpan& su, const BezierSpan& sv, const Grid<Point>& po
                         c[i][j] = c[i][j].lo == 0 && c[i][j].hi == 0 ? term : c[i][j] + term;
                     }
         cell.n.emplace_back(c);
+        for (const auto& row : cell.n.back().c) cell.all.insert(cell.all.end(), row.begin(), row.end());
     }
     return cell;
 }
