@@ -11,9 +11,8 @@ namespace isoparm {
 namespace {
 
 constexpr int kMostRounds = 8;
-constexpr double kLeastGain = 0.003;  // of the triangles, in a round that another one follows
+constexpr double kLeastGain = 0.004;  // of the triangles, in a round that another one follows
 constexpr int kSweeps = 2;            // of moves and flips in a round
-constexpr double kMostCost = 2.5;     // tolerances that a removal may leave for relaxation to bring down
 
 /// Moves and flips, then removals, the cheapest first.
 void round_of(Worker& worker, const FreeComposite& all, std::vector<Site> sites, bool relax, const std::function<void(double)>& progress) {
@@ -24,7 +23,7 @@ void round_of(Worker& worker, const FreeComposite& all, std::vector<Site> sites,
     }
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t i = 0; i < sites.size(); ++i)
-        if (const double cost = worker.cost_of_removal(sites[i]); cost < (relax ? kMostCost : 1)) order.push_back({cost, i});
+        if (const double cost = worker.cost_of_removal(sites[i]); cost < (relax ? double(kMostCost) : 1)) order.push_back({cost, i});
     std::sort(order.begin(), order.end());
     for (std::size_t k = 0; k < order.size(); ++k) {
         if (live(sites[order[k].second])) worker.remove(sites[order[k].second], relax);

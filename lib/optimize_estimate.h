@@ -1,5 +1,6 @@
-// optimize_estimate.h -- what optimize() expects of a triangle before it is proved; internal to optimize*.cpp.
+// optimize_estimate.h -- what optimize() expects of triangles before they are proved; internal to optimize*.cpp.
 #pragma once
+#include "batch.h"
 #include "bound_cell.h"
 
 namespace isoparm {
@@ -29,7 +30,19 @@ struct Estimate {
     double with(const std::array<const Estimate*, 3>& neighbours) const;
 };
 
-/// The normal, the parts across and whether it is quiet, in lengths, from a model that need not hold the triangle: what finer cells would tell.
-Estimate estimate(const SecondDerivatives& model, const Places& places);
+/// Triangles that may come to be, each with a model that need not hold it, by lanes; those beyond the ones asked for may hold any.
+struct EstimateLanes {
+    static constexpr int size = 8;
+    alignas(64) double u[3][size]{}, v[3][size]{}, x[3][3][size]{}, slack[size]{};
+    double model_u[size]{}, model_v[size]{}, h[3][3][size]{}, t[4][3][size]{}, t_least[4][size]{};  // t_least: sizes of third derivatives somewhere
+
+    void set(std::size_t lane, const SecondDerivatives& model, const Places& places);
+};
+
+/// Of the first n triangles, by the geometric measure, what finer cells would tell: whether they are quiet, and all else but `parametric` of those that are.
+/// The same for every instruction set.
+void estimate_lanes(const EstimateLanes& lanes, int n, double tolerance, Estimate* estimates);
+/// With the loops of one instruction set, which must run here.
+void estimate_lanes(Isa isa, const EstimateLanes& lanes, int n, double tolerance, Estimate* estimates);
 
 }  // namespace isoparm

@@ -113,7 +113,6 @@ void FreePatch::fill(const Hole& hole) {
         t = FreeTriangle();
         t.root = like.root, t.cell = like.cell;
         for (int k = 0; k < 3; ++k) t.corner[k] = hole.corners[hole.filling[f][k]];
-        t.own = estimate_of(places(t.corner), t);
         for (int k = 0; k < 3; ++k) {
             const auto a = hole.filling[f][k], b = hole.filling[f][(k + 1) % 3];
             touch_corner(t.corner[k]);
@@ -169,6 +168,7 @@ bool FreePatch::remove(std::uint32_t corner) {
         changed.insert(changed.end(), h.free.begin(), h.free.begin() + std::ptrdiff_t(h.filling.size()));
     }
     if (holes.size() == 2) join_chords(holes);
+    estimate_anew(changed);
     update(changed);
     touch_corner(corner);
     corners_[corner].triangle = kNone;

@@ -24,7 +24,7 @@ bool turns_left(const std::array<Vec2, 3>& p) {
 
 FreePatch::FreePatch(const Patch& patch, const PatchMesh& mesh, const std::vector<Point>& positions, double tolerance, Measure measure)
     : patch_(patch), tolerance_(tolerance), measure_(measure), breaks_u_(mesh.breaks_u), breaks_v_(mesh.breaks_v), corners_(mesh.uv.size()), triangles_(mesh.triangles.size()),
-      triangle_epoch_(triangles_.size(), 0), corner_epoch_(corners_.size(), 0) {
+      triangle_epoch_(triangles_.size(), 0), corner_epoch_(corners_.size(), 0), changed_(triangles_.size(), 0), tried_(triangles_.size()) {
     const auto is_break = [](const std::vector<double>& breaks, double x) { return std::binary_search(breaks.begin(), breaks.end(), x); };
     for (std::size_t i = 0; i < corners_.size(); ++i) {
         FreeCorner& c = corners_[i];
@@ -65,21 +65,42 @@ Places FreePatch::places(const std::array<std::uint32_t, 3>& corner) const {
     return p;
 }
 
+void FreePatch::estimate(int n, const Places* places, const FreeTriangle* const* like, Estimate* estimates) const {
+    if (measure_ == Measure::geometric) {
+        for (int i = 0; i < n; ++i) lanes_.set(std::size_t(i), like[i]->cell->model(), places[i]);
+        estimate_lanes(lanes_, n, tolerance_, estimates);
+    }
+    for (int i = 0; i < n; ++i) {
+        Estimate& e = estimates[i];
+        const Places& p = places[i];
+        const SecondDerivatives& model = like[i]->cell->model();
+        const bool fits = model.bounded && turns_left(p.uv);
+        e.parametric = kInfinity, e.quiet = e.quiet && fits;
+        if (e.quiet || !fits) continue;
+        const TriangleBound b = bound_triangle(model, p.corners(), measure_);
+        const auto relative = [&](double x) { return (x + p.slack) / tolerance_; };
+        e = {relative(b.parametric), relative(b.normal), {}, {}, b.unit, measure_ == Measure::geometric && b.quiet};
+        for (std::size_t k = 0; k < 3; ++k) e.beside[k] = relative(b.beside[k]), e.across[k] = b.across[k] / tolerance_;
+    }
+}
+
+void FreePatch::estimate_anew(const std::vector<std::uint32_t>& triangles) {
+    constexpr std::size_t lanes = EstimateLanes::size;
+    std::array<Places, lanes> places_of;
+    std::array<const FreeTriangle*, lanes> like;
+    std::array<Estimate, lanes> own;
+    for (std::size_t from = 0; from < triangles.size(); from += lanes) {
+        const std::size_t some = std::min(lanes, triangles.size() - from);
+        for (std::size_t i = 0; i < some; ++i) like[i] = &triangles_[triangles[from + i]], places_of[i] = places(like[i]->corner);
+        estimate(int(some), places_of.data(), like.data(), own.data());
+        for (std::size_t i = 0; i < some; ++i) triangles_[triangles[from + i]].own = own[i];
+    }
+}
+
 Estimate FreePatch::estimate_of(const Places& p, const FreeTriangle& like) const {
     Estimate e;
-    e.parametric = kInfinity;
-    if (!turns_left(p.uv)) return e;
-    const SecondDerivatives& model = like.cell->model();
-    if (!model.bounded) return e;
-    if (measure_ == Measure::geometric) e = estimate(model, p);
-    if (!e.quiet) {
-        const TriangleBound b = bound_triangle(model, p.corners(), measure_);
-        e = {b.parametric, b.normal, b.beside, b.across, b.unit, measure_ == Measure::geometric && b.quiet};
-    }
-    e.parametric = (e.parametric + p.slack) / tolerance_;
-    e.normal = (e.normal + p.slack) / tolerance_;
-    for (double& x : e.across) x /= tolerance_;
-    for (double& x : e.beside) x = (x + p.slack) / tolerance_;
+    const FreeTriangle* as = &like;
+    estimate(1, &p, &as, &e);
     return e;
 }
 
@@ -89,8 +110,10 @@ const Estimate* FreePatch::behind(const FreeTriangle& like, std::uint32_t other)
 
 /// The errors of triangles whose own estimates are new, and of those beside them.
 void FreePatch::update(const std::vector<std::uint32_t>& changed) {
+    ++clock_;
     const auto refresh = [&](std::uint32_t i) {
         FreeTriangle& t = triangles_[i];
+        changed_[i] = clock_;
         if (!t.left_out) t.error = t.own.with({behind(t, t.beside[0]), behind(t, t.beside[1]), behind(t, t.beside[2])});
     };
     for (const auto i : changed) {
@@ -102,6 +125,7 @@ void FreePatch::update(const std::vector<std::uint32_t>& changed) {
 
 Ring FreePatch::ring(std::uint32_t corner) const {
     Ring r;
+    r.triangles.reserve(8), r.links.reserve(8);
     const auto first = corners_[corner].triangle;
     auto begin = first;  // clockwise to the rim, or once around
     for (;;) {
@@ -131,17 +155,36 @@ double FreePatch::energy(const Ring& ring) const {
     return sum;
 }
 
-double FreePatch::energy_at(const Ring& ring, std::uint32_t corner, const Vec2& uv, const Point& x) const {
+double FreePatch::worst_of(const Ring& ring) const {
+    double worst = 0;
+    for (const auto t : ring.triangles) worst = std::max(worst, triangles_[t].error);
+    return worst;
+}
+
+bool FreePatch::settled(const Ring& ring, std::uint32_t corner) const {
+    return std::all_of(ring.triangles.begin(), ring.triangles.end(), [&](auto t) { return changed_[t] <= corners_[corner].settled; });
+}
+
+double FreePatch::energy_at(const Ring& ring, std::uint32_t corner, const Vec2& uv, const Point& x, double limit) const {
     const std::size_t n = ring.triangles.size();
     std::array<Estimate, kMostRing> own;
     if (n > kMostRing) return kInfinity;
-    for (std::size_t i = 0; i < n; ++i) {
-        const FreeTriangle& t = triangles_[ring.triangles[i]];
-        if (t.left_out) return kInfinity;
-        Places p = places(t.corner);
-        p.uv[t.place(corner)] = uv, p.x[t.place(corner)] = x;
-        own[i] = estimate_of(p, t);
-        if (!(own[i].least() < kInfinity)) return kInfinity;
+    constexpr std::size_t lanes = EstimateLanes::size;
+    std::array<Places, lanes> places_of;
+    std::array<const FreeTriangle*, lanes> like;
+    double least = 0;
+    for (std::size_t from = 0; from < n; from += lanes) {
+        const std::size_t some = std::min(lanes, n - from);
+        for (std::size_t i = 0; i < some; ++i) {
+            const FreeTriangle& t = triangles_[ring.triangles[from + i]];
+            if (t.left_out) return kInfinity;
+            Places& p = places_of[i] = places(t.corner);
+            p.uv[t.place(corner)] = uv, p.x[t.place(corner)] = x;
+            like[i] = &t;
+        }
+        estimate(int(some), places_of.data(), like.data(), &own[from]);
+        for (std::size_t i = from; i < from + some; ++i) least += power(own[i].least());
+        if (!(least < limit)) return kInfinity;
     }
     double sum = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -155,6 +198,11 @@ double FreePatch::energy_at(const Ring& ring, std::uint32_t corner, const Vec2& 
         sum += power(own[i].with(neighbours));
     }
     return sum;
+}
+
+Point FreePatch::point_near(std::uint32_t corner, const Vec2& uv) const {
+    const PolynomialCell& polynomial = triangles_[corners_[corner].triangle].root->polynomial();
+    return polynomial.exact() ? polynomial.point(uv) : patch_.point(uv.x, uv.y);
 }
 
 void FreePatch::begin() {
@@ -176,7 +224,8 @@ void FreePatch::touch_corner(std::uint32_t c) {
 }
 
 void FreePatch::take_back() {
-    for (const auto& [i, t] : old_triangles_) triangles_[i] = t;
+    ++clock_;
+    for (const auto& [i, t] : old_triangles_) triangles_[i] = t, changed_[i] = clock_;
     for (const auto& [i, c] : old_corners_) corners_[i] = c;
 }
 
@@ -193,10 +242,9 @@ void FreePatch::move(std::uint32_t corner, const Vec2& uv, const Point& x) {
     const Ring r = ring(corner);
     for (const auto i : r.triangles) {
         touch(i);
-        FreeTriangle& t = triangles_[i];
-        t.proved = false;
-        t.own = estimate_of(places(t.corner), t);
+        triangles_[i].proved = false;
     }
+    estimate_anew(r.triangles);
     update(r.triangles);
 }
 
@@ -221,12 +269,18 @@ void FreePatch::rename(std::uint32_t t, std::uint32_t from, std::uint32_t to) {
 bool FreePatch::flip(std::uint32_t i, int k) {
     const auto j = triangles_[i].beside[k];
     if (j == kNone || triangles_[i].left_out || triangles_[j].left_out || triangles_[i].root != triangles_[j].root) return false;
-    const FreeTriangle ti = triangles_[i], tj = triangles_[j];
+    if (std::max(changed_[i], changed_[j]) <= tried_[i][k]) return false;  // in vain, and nothing is new
+    const FreeTriangle &ti = triangles_[i], &tj = triangles_[j];
     const auto a = ti.corner[k], b = ti.corner[(k + 1) % 3], c = ti.corner[(k + 2) % 3];
     const int m = tj.place(b);  // edge m of the other one is b to a
     const auto d = tj.corner[(m + 2) % 3];
+    tried_[i][k] = tried_[j][m] = clock_;
     if (!may_join(c, d)) return false;
-    const Estimate first = estimate_of(places({a, d, c}), ti), second = estimate_of(places({d, b, c}), tj);
+    const std::array<Places, 2> p{places({a, d, c}), places({d, b, c})};
+    const std::array<const FreeTriangle*, 2> like{&ti, &tj};
+    std::array<Estimate, 2> own;
+    estimate(2, p.data(), like.data(), own.data());
+    const auto& [first, second] = own;
     const auto ad = tj.beside[(m + 1) % 3], db = tj.beside[(m + 2) % 3], bc = ti.beside[(k + 1) % 3], ca = ti.beside[(k + 2) % 3];
     const double after = power(first.with({behind(ti, ad), &second, behind(ti, ca)})) + power(second.with({behind(tj, db), behind(tj, bc), &first}));
     if (!(after < (power(ti.error) + power(tj.error)) * (1 - 1e-6))) return false;

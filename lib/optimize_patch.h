@@ -14,6 +14,9 @@ namespace isoparm {
 /// Where a corner may go: nowhere, anywhere between breaks, along a break v = const or u = const, along a rim.
 enum class Freedom : char { fixed, inside, along_u, along_v, rim };
 
+/// In tolerances: what a removal may leave at first, for moves and flips to bring down.
+inline constexpr float kMostCost = 2.5f;
+
 struct FreeCorner {
     Vec2 uv;
     Point x;
@@ -23,6 +26,8 @@ struct FreeCorner {
     std::uint32_t rim_point = kNone;
     Freedom freedom = Freedom::inside;
     float step = 0.2f;               // of its next move, relative to the edges
+    float most_cost = kMostCost;     // of a removal that is worth a try
+    std::uint32_t settled = 0;       // the time when the least step was tried in vain
 
     bool live() const { return triangle != kNone; }
     bool on_rim() const { return freedom == Freedom::rim || freedom == Freedom::fixed; }
@@ -57,12 +62,21 @@ public:
     const std::vector<FreeTriangle>& triangles() const { return triangles_; }
     void set_freedom(std::uint32_t corner, Freedom freedom, std::uint32_t rim_point = kNone) { corners_[corner].freedom = freedom, corners_[corner].rim_point = rim_point; }
     void set_step(std::uint32_t corner, float step) { corners_[corner].step = step; }
+    void set_most_cost(std::uint32_t corner, float cost) { corners_[corner].most_cost = cost; }
     std::size_t count() const;
 
     Ring ring(std::uint32_t corner) const;
     /// Sum of high powers of the errors around a corner; with a place: if the corner were there, infinite when a triangle would turn over.
     double energy(const Ring& ring) const;
-    double energy_at(const Ring& ring, std::uint32_t corner, const Vec2& uv, const Point& x) const;
+    /// And infinite where it is not below the limit, as far as that is known soon.
+    double energy_at(const Ring& ring, std::uint32_t corner, const Vec2& uv, const Point& x, double limit) const;
+    /// Where the surface is at other parameters of a corner, but for rounding.
+    Point point_near(std::uint32_t corner, const Vec2& uv) const;
+    /// The largest estimated error of these triangles.
+    double worst_of(const Ring& ring) const;
+    /// A corner that did not move by the least step will not, as long as nothing changes around it.
+    void settle(std::uint32_t corner) { corners_[corner].settled = clock_; }
+    bool settled(const Ring& ring, std::uint32_t corner) const;
     /// The largest error that removing a corner would leave; infinite where it cannot be removed.
     double cost_of_removal(std::uint32_t corner) const;
 
@@ -76,7 +90,7 @@ public:
     bool remove(std::uint32_t corner);
     /// The largest estimated error of the triangles changed since begin().
     double worst_change() const;
-    /// Proves all triangles changed since begin() and those beside them: true when all keep the tolerance.
+    /// Proves all triangles changed since begin() and those beside them: true when all keep the tolerance. May be asked again after more changes.
     bool certify();
 
 private:
@@ -87,7 +101,11 @@ private:
     void join_chords(const std::vector<Hole>& holes);
 
     Places places(const std::array<std::uint32_t, 3>& corner) const;
+    /// Of n triangles, EstimateLanes::size at most, with the models of others.
+    void estimate(int n, const Places* places, const FreeTriangle* const* like, Estimate* estimates) const;
     Estimate estimate_of(const Places& p, const FreeTriangle& like) const;
+    /// Of triangles that changed.
+    void estimate_anew(const std::vector<std::uint32_t>& triangles);
     /// What lies behind an edge, nullptr where it does not count: nothing, another patch, the other side of a break.
     const Estimate* behind(const FreeTriangle& like, std::uint32_t other) const;
     void update(const std::vector<std::uint32_t>& changed);
@@ -107,16 +125,20 @@ private:
     std::vector<double> breaks_u_, breaks_v_;
     std::vector<FreeCorner> corners_;
     std::vector<FreeTriangle> triangles_;
-    std::uint32_t epoch_ = 0;  // counts begin()
+    mutable EstimateLanes lanes_;  // of estimate(): need not be cleared each time
+    std::uint32_t epoch_ = 0;      // counts begin()
     std::vector<std::uint32_t> triangle_epoch_, corner_epoch_;
+    std::uint32_t clock_ = 0;                          // counts changes
+    std::vector<std::uint32_t> changed_;               // when a triangle, or one beside it, changed last
+    std::vector<std::array<std::uint32_t, 3>> tried_;  // when a flip of its edge was tried last
     std::vector<std::pair<std::uint32_t, FreeTriangle>> old_triangles_;
     std::vector<std::pair<std::uint32_t, FreeCorner>> old_corners_;
 };
 
-/// e^12: so high that the largest errors count most.
+/// e^16: so high that the largest errors count most.
 inline double power(double e) {
     const double e2 = e * e, e4 = e2 * e2;
-    return e4 * e4 * e4;
+    return e4 * e4 * e4 * e4;
 }
 
 }  // namespace isoparm

@@ -55,7 +55,7 @@ bool FreePatch::holds_sharply(std::uint32_t i) {
 bool FreePatch::certify() {
     for (const auto& [c, old] : old_corners_) {
         FreeCorner& corner = corners_[c];
-        if (!corner.live() || (corner.uv.x == old.uv.x && corner.uv.y == old.uv.y)) continue;
+        if (!corner.live() || (corner.uv.x == old.uv.x && corner.uv.y == old.uv.y && corner.slack == old.slack)) continue;
         corner.slack = slack_of(patch_, corner.uv, corner.x);
     }
     for (const auto& [i, old] : old_triangles_) {

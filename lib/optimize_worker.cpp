@@ -9,8 +9,15 @@ namespace {
 constexpr float kLeastStep = 0.01f, kMostStep = 0.4f;  // of moves, relative to the edges
 constexpr double kGain = 1 - 1e-4;     // a move lowers the energy at least by this factor
 constexpr double kEnough = 0.995;      // tolerances: what estimates should say before a proof is tried
+constexpr double kLess = 0.015;        // of which there should be less after a proof in vain
+constexpr int kMostProofs = 4;         // of a removal
 constexpr int kSweeps = 12;            // of relaxation
 constexpr double kProgress = 0.9;      // of what is above that, after each sweep but the first
+constexpr double kNear = 1.03;         // tolerances: what is left where one more ring of corners may help
+constexpr double kIdle = 0.85;         // of the largest error: corners with less around them do not move in a sweep
+
+/// Of the removal of a corner, to be tried again: `cost` was too much, as relaxation left `left`. Near misses may fit when something else has moved.
+float most_cost_after(double cost, double left) { return left < 1.02 ? kMostCost : float((left < 1.1 ? 1 : 0.95) * cost); }
 
 }  // namespace
 
@@ -38,9 +45,12 @@ void Worker::begin() {
     old_points_.clear();
 }
 
+bool Worker::certify() {
+    return std::all_of(members_.begin(), members_.end(), [&](auto m) { return all_.patches()[m].certify(); });
+}
+
 bool Worker::finish(bool good) {
-    for (const auto m : members_) good = good && all_.patches()[m].certify();
-    if (good) return true;
+    if (good && certify()) return true;
     for (const auto m : members_) all_.patches()[m].take_back();
     for (auto it = old_points_.rbegin(); it != old_points_.rend(); ++it) all_.rim_points()[it->first] = it->second;
     return false;
@@ -72,7 +82,7 @@ bool Worker::move_rim(std::uint32_t index) {
         q.f = p.f + double(step) * (all_.rim_points()[toward].f - p.f);
         all_.place(p, q.f, q.x, uv);
         double sum = 0;
-        for (std::size_t use = 0; use < uses.size() && sum < least; ++use) sum += patch(use).energy_at(rings[use], p.corner[use], uv[use], q.x);
+        for (std::size_t use = 0; use < uses.size() && sum < least; ++use) sum += patch(use).energy_at(rings[use], p.corner[use], uv[use], q.x, least - sum);
         if (sum < least) least = sum, best = q, best_uv = uv;
     }
     const bool moved = best.f != p.f;
@@ -92,19 +102,19 @@ bool Worker::move_once(Site site) {
     if (c.freedom == Freedom::fixed || !c.live()) return false;
     if (c.freedom == Freedom::rim) return move_rim(c.rim_point);
     const Ring ring = patch.ring(site.corner);
+    if (patch.settled(ring, site.corner)) return false;
     double least = patch.energy(ring) * kGain;
     bool moved = false;
     Vec2 best;
-    Point best_x;
     for (const auto l : ring.links) {
         const Vec2 to = patch.corners()[l].uv;
         if ((c.freedom == Freedom::along_u && to.y != c.uv.y) || (c.freedom == Freedom::along_v && to.x != c.uv.x)) continue;
-        Vec2 p{c.uv.x + double(c.step) * (to.x - c.uv.x), c.uv.y + double(c.step) * (to.y - c.uv.y)};
-        const Point x = patch.patch().point(p.x, p.y);
-        const double sum = patch.energy_at(ring, site.corner, p, x);
-        if (sum < least) least = sum, best = p, best_x = x, moved = true;
+        const Vec2 p{c.uv.x + double(c.step) * (to.x - c.uv.x), c.uv.y + double(c.step) * (to.y - c.uv.y)};
+        const double sum = patch.energy_at(ring, site.corner, p, patch.point_near(site.corner, p), least);
+        if (sum < least) least = sum, best = p, moved = true;
     }
-    if (moved) patch.move(site.corner, best, best_x);
+    if (moved) patch.move(site.corner, best, patch.patch().point(best.x, best.y));
+    else if (c.step == kLeastStep) patch.settle(site.corner);
     patch.set_step(site.corner, moved ? std::min(kMostStep, c.step * 1.3f) : std::max(kLeastStep, c.step * 0.5f));
     return moved;
 }
@@ -138,7 +148,7 @@ double Worker::cost_of_removal(Site site) const {
     return most;
 }
 
-/// The corners of two rings, those that may move.
+/// These corners and those around them that may move.
 std::vector<Site> Worker::around(const std::vector<Site>& links) const {
     std::vector<Site> list;
     const auto add = [&](Site s) {
@@ -153,17 +163,18 @@ std::vector<Site> Worker::around(const std::vector<Site>& links) const {
     return list;
 }
 
-bool Worker::relaxed(const std::vector<Site>& around) {
-    double last = worst();
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
-        for (const Site& s : around) move_once(s);
+/// Moves and flips until the largest error is `enough`, or little is gained, or `sweeps`, which are counted on, are too many: what it is then.
+double Worker::relax(const std::vector<Site>& around, double enough, int& sweeps) {
+    double now = worst();
+    for (int done = 0; now > enough && sweeps < kSweeps; ++done, ++sweeps) {
+        const double last = now;
+        for (const Site& s : around)
+            if (const FreePatch& patch = all_.patches()[s.patch]; patch.worst_of(patch.ring(s.corner)) > kIdle * last) move_once(s);
         for (const Site& s : around) flip_once(s);
-        const double now = worst();
-        if (now <= kEnough) return true;
-        if (sweep >= 2 && now - kEnough > kProgress * (last - kEnough)) return false;
-        last = now;
+        now = worst();
+        if (done >= 2 && now - enough > kProgress * (last - enough)) break;
     }
-    return false;
+    return now;
 }
 
 void Worker::take_off_rim(std::uint32_t index) {
@@ -185,7 +196,24 @@ bool Worker::remove(Site site, bool relax) {
     for (const Site& s : sites)
         if (!all_.patches()[s.patch].remove(s.corner)) return finish(false);
     if (corner.freedom == Freedom::rim) take_off_rim(corner.rim_point);
-    return finish(worst() <= kEnough || (relax && relaxed(around(links))));
+    const double cost = worst();
+    if (!relax) return finish(cost <= kEnough);
+    if (!(cost < corner.most_cost)) return finish(false);
+    std::vector<Site> movable = around(links);
+    int sweeps = 0;
+    double enough = kEnough, left = this->relax(movable, enough, sweeps);
+    if (left > enough && left < kNear) {
+        movable = around(movable), sweeps = 0;
+        left = this->relax(movable, enough, sweeps);
+    }
+    for (int proofs = 0; left <= enough && proofs < kMostProofs; ++proofs) {
+        if (certify()) return true;
+        enough = left - kLess;
+        left = this->relax(movable, enough, sweeps);
+    }
+    finish(false);
+    all_.patches()[site.patch].set_most_cost(site.corner, most_cost_after(cost, left));
+    return false;
 }
 
 }  // namespace isoparm

@@ -32,7 +32,8 @@ private:
     bool move_rim(std::uint32_t rim_point);
     bool flip_once(Site site);
     void take_off_rim(std::uint32_t rim_point);
-    bool relaxed(const std::vector<Site>& around);
+    double relax(const std::vector<Site>& around, double enough, int& sweeps);
+    bool certify();
     void begin();
     bool finish(bool good);
     double worst() const;

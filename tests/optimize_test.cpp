@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bound_cell.h"
+#include "optimize_estimate.h"
 #include "patches/tensor_bezier.h"
 #include "patches/transformed.h"
 #include "quiet.h"
@@ -141,6 +142,68 @@ TEST(OptimalMesh, DoesNotDependOnTheNumberOfThreads) {
         EXPECT_TRUE(one.positions == other.positions);
         for (std::size_t m = 0; m < one.parts.size(); ++m) EXPECT_TRUE(one.parts[m].triangles == other.parts[m].triangles && one.parts[m].vertex == other.parts[m].vertex);
     }
+}
+
+// Where the model is exact an estimate is what is proved, but for rounding and the second way to bound heights. In every lane, by every instruction set.
+TEST(OptimalMesh, EstimatesAreWhatExactModelsProve) {
+    int quiet = 0, equal = 0;
+    for (int round = 0; round < 400; ++round) {
+        Random random(std::uint64_t(4000 + round));
+        std::vector<std::vector<Point>> net(4, std::vector<Point>(4));
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) net[std::size_t(i)][std::size_t(j)] = Point{double(i), double(j), 0} + random.vector(0.3);
+        const Patch patch = make_bezier_patch(net);
+        const PolynomialCell cell(patch, {{0, 1}, {0, 1}});
+        const double tolerance = random.number(0.001, 0.1), size = random.number(0.01, 0.4);
+        EstimateLanes lanes;
+        std::array<TriangleBound, EstimateLanes::size> proved;
+        std::array<double, EstimateLanes::size> slack;
+        for (std::size_t lane = 0; lane < proved.size(); ++lane) {
+            Places p;
+            const Vec2 m{random.number(0.5 * size, 1 - 0.5 * size), random.number(0.5 * size, 1 - 0.5 * size)};
+            const double turn = random.number(0, 6);
+            for (int k = 0; k < 3; ++k) {
+                const double angle = turn + 2 * k + random.number(-0.5, 0.5);
+                p.uv[k] = {m.x + 0.5 * size * std::cos(angle), m.y + 0.5 * size * std::sin(angle)}, p.x[k] = patch.point(p.uv[k].x, p.uv[k].y);
+            }
+            slack[lane] = p.slack = random.number(0, 1e-9);
+            const Box box = box_of(p.uv);
+            SecondDerivatives model = cell(box);
+            model.h_rad = {}, model.t_rad = {};
+            model.add_sizes(0.5 * (box.u.hi - box.u.lo), 0.5 * (box.v.hi - box.v.lo));
+            lanes.set(lane, model, p);
+            proved[lane] = bound_triangle(model, p.corners(), Measure::geometric);
+        }
+        std::array<Estimate, EstimateLanes::size> baseline;
+        for (const Isa isa : all_isas) {
+            if (!runs(isa)) continue;
+            std::array<Estimate, EstimateLanes::size> all;
+            for (int n = 1; n <= EstimateLanes::size; ++n) {
+                std::array<Estimate, EstimateLanes::size> some;
+                estimate_lanes(isa, lanes, n, tolerance, some.data());
+                const Estimate& e = all[std::size_t(n - 1)] = some[std::size_t(n - 1)];
+                if (isa == all_isas[0]) baseline[std::size_t(n - 1)] = e;
+                const Estimate& as = baseline[std::size_t(n - 1)];
+                EXPECT_TRUE(e.quiet == as.quiet && (!e.quiet || (e.normal == as.normal && e.beside == as.beside && e.across == as.across && e.unit == as.unit))) << to_text(isa);
+            }
+            for (std::size_t lane = 0; lane < all.size(); ++lane) {
+                const Estimate& e = all[lane];
+                const TriangleBound& b = proved[lane];
+                ASSERT_EQ(e.quiet, b.quiet);
+                if (!e.quiet) continue;
+                const auto length_of = [&](double x) { return x * tolerance - slack[lane]; };
+                ++quiet, equal += length_of(e.normal) <= b.normal * (1 + 1e-6);
+                EXPECT_GE(length_of(e.normal), b.normal * (1 - 1e-6) - 1e-8);
+                EXPECT_LT(length(e.unit - b.unit), 1e-12);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    EXPECT_NEAR(e.across[k] * tolerance, b.across[k], 1e-6 * b.across[k] + 1e-8);
+                    EXPECT_LE(length_of(e.beside[k]), b.beside[k] * (1 + 1e-6) + 1e-8);
+                }
+            }
+        }
+    }
+    EXPECT_GT(quiet, 2000);
+    EXPECT_GT(equal, 0.9 * quiet);
 }
 
 // (Q2) for a constant second derivative: the derivative of the map at barycentric coordinates w is then exact.
