@@ -14,13 +14,15 @@ void Tracer::sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* sp
     const PixelSampler sampler(x, y, samples_);
     while (sum.seen < to && !(stop && stop())) {
         const int first = sum.seen, n = std::min(EmbreeScene::packet, to - first);
-        Ray rays[EmbreeScene::packet];
-        SampleOf of[EmbreeScene::packet];
-        Vec2 pixel[EmbreeScene::packet];
         Rgba seen[EmbreeScene::packet];
-        for (int i = 0; i < n; ++i) of[i] = {&sampler, first + i}, pixel[i] = {double(x), double(y)};
-        this->rays(pixel, of, n, rays);
-        trace(rays, of, n, seen);
+        if (may_meet(x, y)) {
+            Ray rays[EmbreeScene::packet];
+            SampleOf of[EmbreeScene::packet];
+            Vec2 pixel[EmbreeScene::packet];
+            for (int i = 0; i < n; ++i) of[i] = {&sampler, first + i}, pixel[i] = {double(x), double(y)};
+            this->rays(pixel, of, n, rays);
+            trace(rays, of, n, seen);
+        }
         add(seen, n, counts, sum, spread);
     }
 }
@@ -42,6 +44,8 @@ Tracer::Block Tracer::block() const {
 }
 
 void Tracer::sample_block(int x, int y, Rgba* seen) const {
+    static_assert(Coverage::block % 4 == 0);  // blocks of samples lie within those of the coverage
+    if (!may_meet(x, y)) return;
     std::array<std::optional<PixelSampler>, EmbreeScene::packet> samplers;
     Ray rays[EmbreeScene::packet];
     SampleOf of[EmbreeScene::packet];
