@@ -45,10 +45,12 @@ public:
     Rgba glance(double x, double y) const;
 
 private:
-    /// What a ray of the pixel met, and as which of its layers; a hit that is none is of the ground, at its distance.
-    struct Met {
-        Hit hit;
-        int ray, layer;
+    /// What rays met, and as which of their layers; a hit that is none is of the ground, at its distance.
+    struct Packet {
+        Ray by[EmbreeScene::packet];
+        Hit hits[EmbreeScene::packet];
+        int ray[EmbreeScene::packet], layer[EmbreeScene::packet], count = 0;
+        void add(const Ray& one, const Hit& hit, int number, int of_ray) { by[count] = one, hits[count] = hit, ray[count] = number, layer[count++] = of_ray; }
     };
     /// Through the samples' places in the pixels whose corners are given.
     void rays(const Vec2* pixel, const SampleOf* of, int n, Ray* out) const;
@@ -60,7 +62,7 @@ private:
     /// May a sample of the pixel be anything but empty?
     bool may_meet(int x, int y) const { return open_ || coverage_.may_meet(x, y); }
     void trace(const Ray* rays, const SampleOf* of, int n, Rgba* seen) const;
-    void add_light(const Ray* rays, const SampleOf* of, const std::vector<Met>& met, Rgba* seen) const;
+    void add_light(const SampleOf* of, const Packet& met, Rgba* seen) const;
 
     const TracedScene& scene_;
     const Camera& camera_;
