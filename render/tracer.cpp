@@ -11,11 +11,16 @@
 namespace isoparm {
 
 void Tracer::sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* spread, const std::function<bool()>& stop) const {
+    const bool empty = !may_meet(x, y);
+    if (empty && !spread && sum.seen < to) {  // sums stay as they are
+        if (counts) sum.used += to - sum.seen;
+        sum.seen = to;
+    }
     const PixelSampler sampler(x, y, samples_);
     while (sum.seen < to && !(stop && stop())) {
         const int first = sum.seen, n = std::min(EmbreeScene::packet, to - first);
         Rgba seen[EmbreeScene::packet];
-        if (may_meet(x, y)) {
+        if (!empty) {
             Ray rays[EmbreeScene::packet];
             SampleOf of[EmbreeScene::packet];
             Vec2 pixel[EmbreeScene::packet];
