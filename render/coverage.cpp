@@ -35,15 +35,16 @@ void Coverage::mark(const Point* points, int n, double radius) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     constexpr double kAside = PixelFilter::radius + 0.01;
     double x0 = kInfinity, y0 = kInfinity, x1 = -kInfinity, y1 = -kInfinity;
+    const auto size = [](const Point& p) { return std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z); };
     for (int i = 0; i < n; ++i) {
-        const double depth = camera_.depth(points[i]);
+        const double depth = camera_.depth(points[i]), r = radius + 1e-15 * (size(points[i]) + size(camera_.eye));  // far eyes cost digits
         // Not told apart: what is beside the eye, or nearly, and what has no place.
-        if (!std::isfinite(depth) || (!camera_.orthographic && !(depth > 1.001 * radius))) return mark(0, 0, camera_.width, camera_.height);
+        if (!std::isfinite(depth) || (!camera_.orthographic && !(depth > 1.001 * r))) return mark(0, 0, camera_.width, camera_.height);
         const Vec2 at = camera_.project(points[i]);
         // A point of the ball is at x' = x + dx, z' = z + dz, with |dx|, |dz| <= r: |x'/z' - x/z| <= r (1 + |x/z|) / (z - r).
-        const double pixel = camera_.pixel_size(depth - (camera_.orthographic ? 0 : radius)), tangent = camera_.orthographic ? 0 : camera_.pixel_size(1);
-        const double grown_x = radius * (1 + tangent * std::fabs(at.x - 0.5 * camera_.width - camera_.shift.x)) / pixel;
-        const double grown_y = radius * (1 + tangent * std::fabs(at.y - 0.5 * camera_.height - camera_.shift.y)) / pixel;
+        const double pixel = camera_.pixel_size(depth - (camera_.orthographic ? 0 : r)), tangent = camera_.orthographic ? 0 : camera_.pixel_size(1);
+        const double grown_x = r * (1 + tangent * std::fabs(at.x - 0.5 * camera_.width - camera_.shift.x)) / pixel;
+        const double grown_y = r * (1 + tangent * std::fabs(at.y - 0.5 * camera_.height - camera_.shift.y)) / pixel;
         x0 = std::min(x0, at.x - grown_x), x1 = std::max(x1, at.x + grown_x);
         y0 = std::min(y0, at.y - grown_y), y1 = std::max(y1, at.y + grown_y);
     }

@@ -6,6 +6,7 @@
 #include "traced_scene.h"
 
 namespace isoparm {
+
 FigureLighting::FigureLighting(const Camera& camera, const std::optional<Ground>& ground) : studio_(camera), key_(studio_.key), kernel_(shade_kernel(chosen_isa())) {
     if (!ground) return;
     constexpr int kSteps = 128;
