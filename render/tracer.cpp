@@ -166,7 +166,7 @@ void Tracer::surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const
 
 /// Layers of a ray come from front to back.
 void Tracer::add_light(const SampleOf* of, const Packet& met, Rgba* seen) const {
-    const int count = met.count;
+    const int count = std::min(met.count, EmbreeScene::packet);  // which it is, but the compiler does not see that
     Surfel surfels[EmbreeScene::packet];
     if (ground_) this->surfels(met.by, met.hits, count, surfels);
     else surfels_at(scene_, camera_, met.by, met.hits, count, surfels);
