@@ -79,7 +79,9 @@ std::optional<Ground> ground_of(const Scene& scene, const std::vector<SceneObjec
 Layers blank_layers(int width, int height, const std::vector<Aov>& aovs) {
     Layers layers{channels_of(aovs), {}};
     const auto pixel = empty_pixel(aovs);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(width) * height; ++i) layers.values.insert(layers.values.end(), pixel.begin(), pixel.end());
+    const std::size_t pixels = pixel.empty() ? 0 : static_cast<std::size_t>(width) * height;
+    layers.values.reserve(pixels * pixel.size());
+    for (std::size_t i = 0; i < pixels; ++i) layers.values.insert(layers.values.end(), pixel.begin(), pixel.end());
     return layers;
 }
 

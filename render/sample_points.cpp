@@ -39,15 +39,19 @@ ISOPARM_INLINE std::uint32_t mixed(std::uint32_t x) {
     return x ^ (x >> 16);
 }
 
+/// Backwards: the scrambling of the index and the matrix of Sobol' run from the lowest bit of what is reversed, so that only what is looked at from the front has to be turned.
 ISOPARM_INLINE void points_loop(Points& p) {
     const int shift = 32 - p.bits;
-    std::uint32_t index[kLanes], y[kLanes] = {};
-    for (int i = 0; i < kLanes; ++i) index[i] = reversed(scrambled(reversed(p.sample[i] << shift), p.seed[i])) >> shift;
-    for (std::uint32_t bit = 0, v = 1u << 31; bit < static_cast<std::uint32_t>(p.bits); ++bit, v ^= v >> 1)
-        for (int i = 0; i < kLanes; ++i) y[i] ^= v & (0 - (index[i] >> bit & 1));
+    std::uint32_t turned[kLanes], index[kLanes] = {}, y[kLanes] = {};
+    for (int i = 0; i < kLanes; ++i) turned[i] = scrambled(reversed(p.sample[i]) >> shift, p.seed[i]);
+    for (std::uint32_t bit = 0, v = 1; bit < static_cast<std::uint32_t>(p.bits); ++bit, v ^= v << 1)
+        for (int i = 0; i < kLanes; ++i) {
+            const std::uint32_t all = 0 - (turned[i] >> (p.bits - 1 - bit) & 1);
+            index[i] |= all & (1u << bit), y[i] ^= all & v;
+        }
     for (int i = 0; i < kLanes; ++i) {
         p.x[i] = reversed(scrambled(index[i], mixed(p.seed[i] ^ 0x68bc21ebu))) * 0x1p-32;
-        p.y[i] = reversed(scrambled(reversed(y[i]), mixed(p.seed[i] ^ 0x02e5be93u))) * 0x1p-32;
+        p.y[i] = reversed(scrambled(y[i], mixed(p.seed[i] ^ 0x02e5be93u))) * 0x1p-32;
     }
 }
 

@@ -28,6 +28,7 @@ struct Surfel {
     int dimension = 0;  // of its sampler: the first that is its own
 };
 
+struct ShadeKernel;
 struct TracedScene;
 
 class Lighting {
@@ -52,6 +53,7 @@ public:
 private:
     Studio studio_;
     LocalFrame key_;
+    const ShadeKernel& kernel_;
     Color sky_on_ground_;  // its mean over directions, weighted with the cosine
 };
 

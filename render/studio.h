@@ -14,6 +14,7 @@ struct Studio {
 
     static constexpr double key_radius = 0.13;  // tangent of half the width of the key light's disc: soft shadows
     static const Color key_light;               // irradiance over pi at right angles to the light
+    static const Color sky_top, sky_side, sky_below, fill_light;  // radiances that sky() is made of
     Point up, key, fill;                        // unit, toward the lights
 };
 

@@ -5,80 +5,79 @@
 #include <span>
 
 #include "isolines.h"
+#include "surfel_kernel.h"
 
 namespace isoparm {
 namespace {
 
-Point coefficient(const PointFrame& f, int i, int k) {
-    return {f.x.coefficient(i, k), f.y.coefficient(i, k), f.z.coefficient(i, k)};
-}
+Point at_lane(const double (*d)[SurfelLanes::lanes], int i) { return {d[0][i], d[1][i], d[2][i]}; }
+void put(const Point& p, double (*to)[SurfelLanes::lanes], int i) { to[0][i] = p.x, to[1][i] = p.y, to[2][i] = p.z; }
 
 /// Parameters of the hit: those of the corners, weighted as the hit is.
-Vec2 parameters(const Patch& patch, const MeshPart& part, const std::array<std::uint32_t, 3>& corners, const Hit& hit) {
+Vec2 parameters(Domain domain, const Rect& r, const MeshPart& part, const Hit& hit) {
+    const auto& corners = part.triangles[hit.primitive];
     const Vec2 &a = part.uv[corners[0]], &b = part.uv[corners[1]], &c = part.uv[corners[2]];
     const double w = 1 - hit.u - hit.v;
-    const Rect r = patch.rect();
     Vec2 p{std::clamp(w * a.x + hit.u * b.x + hit.v * c.x, r.u0, r.u1),
            std::clamp(w * a.y + hit.u * b.y + hit.v * c.y, r.v0, r.v1)};
-    if (patch.domain() == Domain::triangle && p.x + p.y > 1) p.y = 1 - p.x;
+    if (domain == Domain::triangle && p.x + p.y > 1) p.y = 1 - p.x;
     return p;
 }
 
-/// Unit; not yet turned to the viewer. `otherwise` where the patch has no normal. Second derivatives are needed only for
-/// the limit where the first ones do not span a plane.
-Point normal_of(const Patch& patch, const Point& du, const Point& dv, const Vec2& at, const Point& otherwise) {
-    const Point n = cross(du, dv);
-    const double nn = dot(n, n);
-    if (nn > 1e-18 * dot(du, du) * dot(dv, dv) && std::isfinite(nn)) return n / std::sqrt(nn);
-    return unit_normal(patch, patch.jet(at.x, at.y), at.x, at.y).value_or(otherwise);
-}
-
-/// A mesh's silhouette shows the surface a little beyond its own: bent just enough to face the viewer.
-Point facing(const Point& normal, const Point& view) {
-    constexpr double kLeast = 0.01;
-    const double c = dot(normal, view);
-    return c >= kLeast ? normal : normalized(normal + (kLeast - c) * view);
-}
-
 /// The frames of the patches that were hit, each patch asked once; `at` are the parameters.
-void frames_of(const TracedScene& scene, const Hit* hits, int n, Vec2* at, PointFrame* frames) {
+void set_frames(const TracedScene& scene, const Hit* hits, int n, Vec2* at, SurfelLanes& p) {
     bool done[EmbreeScene::packet] = {};
     for (int first = 0; first < n; ++first) {
         const Patch* patch = scene.things[hits[first].geometry].patch;
         if (!patch || done[first]) continue;
+        const Domain domain = patch->domain();
+        const Rect rect = patch->rect();
         int which[EmbreeScene::packet], count = 0;
         double u[EmbreeScene::packet], v[EmbreeScene::packet];
-        double found[9][EmbreeScene::packet];
+        double some[9][EmbreeScene::packet];
         for (int i = first; i < n; ++i) {
             const Thing& thing = scene.things[hits[i].geometry];
             if (thing.patch != patch) continue;
-            at[i] = thing.mesh ? parameters(*patch, *thing.part, thing.part->triangles[hits[i].primitive], hits[i]) : Vec2{hits[i].u, hits[i].v};
+            at[i] = thing.mesh ? parameters(domain, rect, *thing.part, hits[i]) : Vec2{hits[i].u, hits[i].v};
             u[count] = at[i].x, v[count] = at[i].y;
             which[count++] = i;
             done[i] = true;
         }
         const std::size_t size = static_cast<std::size_t>(count);
+        auto* const found = count == n ? p.frame : some;
         const auto three = [&](int of) { return std::array<std::span<double>, 3>{{{found[of], size}, {found[of + 1], size}, {found[of + 2], size}}}; };
         patch->frames({u, size}, {v, size}, {three(0), three(3), three(6)});
-        for (int k = 0; k < count; ++k)
-            for (int axis = 0; axis < 3; ++axis)
-                for (int c = 0; c < 3; ++c) frames[which[k]][axis].c[c] = found[3 * c + axis][k];
+        if (found == p.frame) return;
+        for (int row = 0; row < 9; ++row)
+            for (int k = 0; k < count; ++k) p.frame[row][which[k]] = some[row][k];
     }
 }
 
-/// Where the ray met, and the normal that tells front from back.
-struct Met {
-    Point at, outward;
-};
-Met on_triangle(const Thing& thing, const Hit& hit) {
+/// The triangle that was met.
+void set_corners(const Thing& thing, const Hit& hit, int i, SurfelLanes& p) {
     const auto& corners = thing.part->triangles[hit.primitive];
-    const auto vertex = [&](int i) -> const Point& { return thing.mesh->positions[thing.part->vertex[corners[i]]]; };
-    const Point e1 = vertex(1) - vertex(0), e2 = vertex(2) - vertex(0);
-    return {vertex(0) + hit.u * e1 + hit.v * e2, normalized(cross(e1, e2))};
+    for (int k = 0; k < 3; ++k) put(thing.mesh->positions[thing.part->vertex[corners[k]]], p.corner[k], i);
+    p.u[i] = hit.u, p.v[i] = hit.v;
 }
-Met on_patch(const Thing& thing, const Ray& ray, const Hit& hit, const Vec2& at, const Point& du, const Point& dv) {
-    const Point n = normal_of(*thing.patch, du, dv, at, -ray.direction);
-    return {ray.origin + hit.distance * ray.direction, thing.flipped ? -n : n};
+
+/// What is no point of a mesh of a patch with a normal: tubes and balls, patches themselves, poles. Second derivatives are needed only for the limit where
+/// the first ones do not span a plane.
+void set_otherwise(const Thing& thing, const Ray& ray, const Hit& hit, const Vec2& at, int i, SurfelLanes& p) {
+    const Point place = ray.origin + hit.distance * ray.direction;
+    if (!thing.patch) {
+        const Point n = normalized(hit.normal);
+        put(place, p.frame, i), put(place, p.on_mesh, i), put(n, p.outward, i), put(n, p.normal, i);
+        return;
+    }
+    const Point otherwise = thing.mesh ? at_lane(p.outward, i) : -ray.direction;
+    const Point du = at_lane(p.frame + 3, i), dv = at_lane(p.frame + 6, i), across = cross(du, dv);
+    const double size = dot(across, across);
+    if (!(size > 1e-18 * dot(du, du) * dot(dv, dv) && std::isfinite(size))) put(unit_normal(*thing.patch, thing.patch->jet(at.x, at.y), at.x, at.y).value_or(otherwise), p.normal, i);
+    if (!thing.mesh) {
+        const Point n = at_lane(p.normal, i);
+        put(place, p.on_mesh, i), put(thing.flipped ? -n : n, p.outward, i);
+    }
+    if (!finite(at_lane(p.frame, i))) put(at_lane(p.on_mesh, i), p.frame, i);
 }
 
 /// Colours that stand for numbers are not lit, so that the legend has the same ones: only darker where the surface turns away.
@@ -94,57 +93,56 @@ void color_by_curvature(const Thing& thing, Surfel& s) {
 }
 
 /// Into what was just constructed: copies take longer than all the rest.
-void make_surfel(const TracedScene& scene, const Camera& camera, const Ray& ray, const Hit& hit, const Vec2& at, const PointFrame& frame, Surfel& s) {
-    const Thing& thing = scene.things[hit.geometry];
-    const double clear = 4e-6 * scene.embree->radius() + thing.error;
-    s.view = -ray.direction;
+void make_surfel(const Thing& thing, const Camera& camera, const Vec2& at, const SurfelLanes& p, int i, Surfel& s) {
+    s.view = at_lane(p.view, i);
     s.opacity = thing.opacity;
     s.material = &thing.material;
-    if (!thing.patch) {
-        const Point n = normalized(hit.normal);
-        s.front = dot(n, s.view) >= 0;
-        s.shading = s.geometric = s.front ? n : -n;
-        s.normal = facing(s.shading, s.view);
-        s.position = ray.origin + hit.distance * ray.direction;
-        s.origin = s.position + clear * s.normal;
-        s.beneath = s.position - clear * s.normal;
-        s.color = thing.front;
-        return;
-    }
-    const Point du = coefficient(frame, 1, 0), dv = coefficient(frame, 0, 1);
-    const auto [on_mesh, outward] = thing.mesh ? on_triangle(thing, hit) : on_patch(thing, ray, hit, at, du, dv);
-    const bool toward = dot(outward, s.view) >= 0, front = toward != thing.inside_out;
-    const Point geometric = toward ? outward : -outward;
-
-    Point position = coefficient(frame, 0, 0);
-    if (!finite(position)) position = on_mesh;
-    const Point n = normal_of(*thing.patch, du, dv, at, geometric);
+    s.position = at_lane(p.frame, i);
+    s.geometric = at_lane(p.geometric, i);
+    s.shading = at_lane(p.shading, i);
+    s.normal = at_lane(p.facing, i);
+    s.origin = at_lane(p.origin, i);
+    s.beneath = at_lane(p.beneath, i);
+    s.front = (p.toward[i] != 0) != thing.inside_out;
+    s.color = s.front ? thing.front : thing.back;
+    if (!thing.patch) return;
     s.at = at;
-    s.position = position;
-    s.geometric = geometric;
-    s.shading = dot(n, geometric) < 0 ? -n : n;
-    s.normal = facing(s.shading, s.view);
-    // Above both the surface and the mesh: no facet shadows its own surface.
-    s.origin = position + (clear + std::max(0.0, dot(on_mesh - position, s.normal))) * s.normal;
-    s.beneath = position - (clear + std::max(0.0, dot(position - on_mesh, s.normal))) * s.normal;
-    s.front = front;
-    s.color = front ? thing.front : thing.back;
-    if (finite(du) && finite(dv)) {
+    const Point du = at_lane(p.frame + 3, i), dv = at_lane(p.frame + 6, i);
+    if ((thing.isolines.u > 0 || thing.isolines.v > 0) && finite(du) && finite(dv)) {
         s.ink = thing.isolines.color;
         s.ink_cover = isoline_cover(thing.isolines, {thing.patch->domain(), thing.patch->rect(), at.x, at.y, du, dv},
-                                    camera, position, ray.direction);
+                                    camera, s.position, -s.view);
     }
     if (thing.scale.by.curvature()) color_by_curvature(thing, s);
-    else if (thing.scale.by.striped() && in_dark_stripe(thing.scale.by, s.normal, ray.direction, camera)) s.color = 0.06 * s.color;
+    else if (thing.scale.by.striped() && in_dark_stripe(thing.scale.by, s.normal, -s.view, camera)) s.color = 0.06 * s.color;
 }
 
 }  // namespace
 
 void surfels_at(const TracedScene& scene, const Camera& camera, const Ray* rays, const Hit* hits, int n, Surfel* out) {
+    static_assert(SurfelLanes::lanes == EmbreeScene::packet);
+    if (n == 0) return;
+    const SurfelKernel& kernel = surfel_kernel(chosen_isa());
+    SurfelLanes p;
     Vec2 at[EmbreeScene::packet];
-    PointFrame frames[EmbreeScene::packet];
-    frames_of(scene, hits, n, at, frames);
-    for (int i = 0; i < n; ++i) make_surfel(scene, camera, rays[i], hits[i], at[i], frames[i], out[i]);
+    const int lanes = (n + SurfelLanes::group - 1) / SurfelLanes::group * SurfelLanes::group;
+    const double clear = 4e-6 * scene.embree->radius();
+    set_frames(scene, hits, n, at, p);
+    for (int i = 0; i < lanes; ++i) {
+        const int k = i < n ? i : 0;
+        const Thing& thing = scene.things[hits[k].geometry];
+        put(-rays[k].direction, p.view, i);
+        p.clear[i] = clear + thing.error;
+        if (thing.mesh) set_corners(thing, hits[k], i, p);
+        else put({}, p.corner[0], i), put({}, p.corner[1], i), put({}, p.corner[2], i), p.u[i] = p.v[i] = 0;
+        if (i >= n || !thing.patch)
+            for (auto& row : p.frame) row[i] = thing.patch ? row[0] : 0;
+    }
+    kernel.normals(lanes, p);
+    for (int i = 0; i < n; ++i)
+        if (const Thing& thing = scene.things[hits[i].geometry]; !thing.mesh || !p.regular[i]) set_otherwise(thing, rays[i], hits[i], at[i], i, p);
+    kernel.places(lanes, p);
+    for (int i = 0; i < n; ++i) make_surfel(scene.things[hits[i].geometry], camera, at[i], p, i, out[i]);
 }
 
 }  // namespace isoparm

@@ -208,11 +208,13 @@ private:
     void add_tubes(const std::vector<CubicPiece>& pieces, double radius, const Color& color, const SceneObject& look) {
         if (pieces.empty() || !(radius > 0) || !(look.opacity > 0)) return;
         result_.embree->add_tubes(pieces, radius, look.opacity);
+        for (const CubicPiece& piece : pieces) result_.solids.push_back({piece, radius});
         add_plain(color, look, radius);
     }
     void add_balls(const std::vector<Point>& centres, double radius, const Color& color, const SceneObject& look) {
         if (centres.empty() || !(radius > 0) || !(look.opacity > 0)) return;
         result_.embree->add_balls(centres, radius, look.opacity);
+        for (const Point& p : centres) result_.solids.push_back({{p, p, p, p}, radius});
         add_plain(color, look, radius);
     }
     void add_plain(const Color& color, const SceneObject& look, double radius) {

@@ -1,5 +1,6 @@
 // traced_scene.h -- a scene turned into what rays meet: certified meshes, tubes and balls, each with its looks.
 #pragma once
+#include <array>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -27,10 +28,17 @@ struct Thing {
     const MeshPart* part = nullptr;
 };
 
+/// A piece of a tube, or a ball: it lies within the convex hull of balls about the points.
+struct Solid {
+    std::array<Point, 4> points;
+    double radius = 0;
+};
+
 struct TracedScene {
     std::deque<Mesh> meshes;
     std::deque<ExactPatch> patches;
     std::vector<Thing> things;  // by the number of the geometry
+    std::vector<Solid> solids;  // of all tubes and balls
     std::unique_ptr<EmbreeScene> embree;
     std::size_t triangles = 0;
     double certified_error = 0;  // of all meshes, float32 included

@@ -11,16 +11,23 @@
 namespace isoparm {
 
 void Tracer::sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* spread, const std::function<bool()>& stop) const {
+    const bool empty = !may_meet(x, y);
+    if (empty && !spread && sum.seen < to) {  // sums stay as they are
+        if (counts) sum.used += to - sum.seen;
+        sum.seen = to;
+    }
     const PixelSampler sampler(x, y, samples_);
     while (sum.seen < to && !(stop && stop())) {
         const int first = sum.seen, n = std::min(EmbreeScene::packet, to - first);
-        Ray rays[EmbreeScene::packet];
-        SampleOf of[EmbreeScene::packet];
-        Vec2 pixel[EmbreeScene::packet];
         Rgba seen[EmbreeScene::packet];
-        for (int i = 0; i < n; ++i) of[i] = {&sampler, first + i}, pixel[i] = {double(x), double(y)};
-        this->rays(pixel, of, n, rays);
-        trace(rays, of, n, seen);
+        if (!empty) {
+            Ray rays[EmbreeScene::packet];
+            SampleOf of[EmbreeScene::packet];
+            Vec2 pixel[EmbreeScene::packet];
+            for (int i = 0; i < n; ++i) of[i] = {&sampler, first + i}, pixel[i] = {double(x), double(y)};
+            this->rays(pixel, of, n, rays);
+            trace(rays, of, n, seen);
+        }
         add(seen, n, counts, sum, spread);
     }
 }
@@ -42,6 +49,8 @@ Tracer::Block Tracer::block() const {
 }
 
 void Tracer::sample_block(int x, int y, Rgba* seen) const {
+    static_assert(Coverage::block % 4 == 0);  // blocks of samples lie within those of the coverage
+    if (!may_meet(x, y)) return;
     std::array<std::optional<PixelSampler>, EmbreeScene::packet> samplers;
     Ray rays[EmbreeScene::packet];
     SampleOf of[EmbreeScene::packet];
@@ -93,7 +102,7 @@ Rgba Tracer::glance(double x, double y) const {
 }
 
 void Tracer::trace(const Ray* rays, const SampleOf* of, int n, Rgba* seen) const {
-    std::vector<Met> met;
+    Packet met;
     if (scene_.embree->translucent()) {
         std::vector<Hit> hits;
         for (int i = 0; i < n; ++i) {
@@ -103,17 +112,20 @@ void Tracer::trace(const Ray* rays, const SampleOf* of, int n, Rgba* seen) const
                 const bool open = hits.empty() || scene_.things[hits.back().geometry].opacity < 1;
                 if (open) hits.push_back(*ground);
             }
-            for (std::size_t k = 0; k < hits.size(); ++k) met.push_back({hits[k], i, static_cast<int>(k)});
+            for (std::size_t k = 0; k < hits.size(); ++k) {
+                met.add(rays[i], hits[k], i, static_cast<int>(k));
+                if (met.count == EmbreeScene::packet) add_light(of, met, seen), met.count = 0;
+            }
         }
     } else {
         Hit hits[EmbreeScene::packet];
         scene_.embree->intersect(rays, n, hits);
         for (int i = 0; i < n; ++i) {
-            if (const auto ground = ground_hit(rays[i], hits[i].distance)) met.push_back({*ground, i, 0});
-            else if (hits[i].found()) met.push_back({hits[i], i, 0});
+            if (const auto ground = ground_hit(rays[i], hits[i].distance)) met.add(rays[i], *ground, i, 0);
+            else if (hits[i].found()) met.add(rays[i], hits[i], i, 0);
         }
     }
-    add_light(rays, of, met, seen);
+    if (met.count > 0) add_light(of, met, seen);
     for (int i = 0; i < n; ++i)
         if (const auto behind = lighting_.backdrop(rays[i].direction)) seen[i].add_behind(*behind, 1);
 }
@@ -153,33 +165,28 @@ void Tracer::surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const
 }
 
 /// Layers of a ray come from front to back.
-void Tracer::add_light(const Ray* rays, const SampleOf* of, const std::vector<Met>& met, Rgba* seen) const {
-    for (std::size_t begin = 0; begin < met.size(); begin += EmbreeScene::packet) {
-        const int count = static_cast<int>(std::min<std::size_t>(EmbreeScene::packet, met.size() - begin));
-        Ray by[EmbreeScene::packet];
-        Hit hits[EmbreeScene::packet];
-        for (int k = 0; k < count; ++k) by[k] = rays[met[begin + k].ray], hits[k] = met[begin + k].hit;
-        Surfel surfels[EmbreeScene::packet];
-        if (ground_) this->surfels(by, hits, count, surfels);
-        else surfels_at(scene_, camera_, by, hits, count, surfels);
-        for (int k = 0; k < count; ++k) {
-            surfels[k].sample = of[met[begin + k].ray];
-            surfels[k].dimension = 1 + lighting_.dimensions() * met[begin + k].layer;
+void Tracer::add_light(const SampleOf* of, const Packet& met, Rgba* seen) const {
+    const int count = std::min(met.count, EmbreeScene::packet);  // which it is, but the compiler does not see that
+    Surfel surfels[EmbreeScene::packet];
+    if (ground_) this->surfels(met.by, met.hits, count, surfels);
+    else surfels_at(scene_, camera_, met.by, met.hits, count, surfels);
+    for (int k = 0; k < count; ++k) {
+        surfels[k].sample = of[met.ray[k]];
+        surfels[k].dimension = 1 + lighting_.dimensions() * met.layer[k];
+    }
+    Color light[EmbreeScene::packet];
+    lighting_.shade(scene_, surfels, count, light);
+    for (int k = 0; k < count; ++k) {
+        Rgba& pixel = seen[met.ray[k]];
+        if (surfels[k].ground) {  // the background, or white, times 1 + light: what is lacking hides, what has a colour is added
+            const Color shade = ground_->shadow * light[k];
+            const double grey = (shade.x + shade.y + shade.z) / 3, open = 1 - pixel.alpha;
+            const Color tint = shade - Color{grey, grey, grey};
+            pixel.color += open * (background_ ? product(*background_, tint) : tint), pixel.alpha -= open * grey;
+            continue;
         }
-        Color light[EmbreeScene::packet];
-        lighting_.shade(scene_, surfels, count, light);
-        for (int k = 0; k < count; ++k) {
-            Rgba& pixel = seen[met[begin + k].ray];
-            if (surfels[k].ground) {  // the background, or white, times 1 + light: what is lacking hides, what has a colour is added
-                const Color shade = ground_->shadow * light[k];
-                const double grey = (shade.x + shade.y + shade.z) / 3, open = 1 - pixel.alpha;
-                const Color tint = shade - Color{grey, grey, grey};
-                pixel.color += open * (background_ ? product(*background_, tint) : tint), pixel.alpha -= open * grey;
-                continue;
-            }
-            if (surfels[k].ink_cover > 0) pixel.add_behind(surfels[k].ink, surfels[k].ink_cover);
-            pixel.add_behind(light[k], surfels[k].opacity);
-        }
+        if (surfels[k].ink_cover > 0) pixel.add_behind(surfels[k].ink, surfels[k].ink_cover);
+        pixel.add_behind(light[k], surfels[k].opacity);
     }
 }
 

@@ -1,5 +1,6 @@
 // tracer.h -- the samples of a picture's pixels: rays through them, what they meet, and the light that comes back.
 #pragma once
+#include "coverage.h"
 #include "film.h"
 #include "sampler.h"
 #include "shade.h"
@@ -24,7 +25,7 @@ class Tracer {
 public:
     /// `ground`: with its height, as the lighting knows it.
     Tracer(const TracedScene& scene, const Camera& camera, const Lighting& lighting, int samples, const std::optional<Color>& background, const std::optional<Ground>& ground)
-        : scene_(scene), camera_(camera), lighting_(lighting), samples_(samples), background_(background), ground_(ground) {}
+        : scene_(scene), camera_(camera), lighting_(lighting), samples_(samples), background_(background), ground_(ground), coverage_(scene, camera), open_(ground || lighting.backdrop(camera.forward)) {}
 
     /// Traces samples of the pixel up to number `to`, in packets that begin at multiples of EmbreeScene::packet; between them it may end early when
     /// `stop` says so. `counts`: they are added to the sums. `spread` may be nullptr.
@@ -34,7 +35,7 @@ public:
         int width, height;
     };
     Block block() const;
-    /// Traces all samples of the block at (x,y): those of its pixels, row by row.
+    /// Traces all samples of the block at (x,y), into what is empty: those of its pixels, row by row.
     void sample_block(int x, int y, Rgba* seen) const;
     /// Adds traced samples to a pixel's sums; `spread` may be nullptr.
     void add(Rgba* seen, int n, bool counts, PixelSum& sum, Spread* spread) const;
@@ -44,10 +45,12 @@ public:
     Rgba glance(double x, double y) const;
 
 private:
-    /// What a ray of the pixel met, and as which of its layers; a hit that is none is of the ground, at its distance.
-    struct Met {
-        Hit hit;
-        int ray, layer;
+    /// What rays met, and as which of their layers; a hit that is none is of the ground, at its distance.
+    struct Packet {
+        Ray by[EmbreeScene::packet];
+        Hit hits[EmbreeScene::packet];
+        int ray[EmbreeScene::packet], layer[EmbreeScene::packet], count = 0;
+        void add(const Ray& one, const Hit& hit, int number, int of_ray) { by[count] = one, hits[count] = hit, ray[count] = number, layer[count++] = of_ray; }
     };
     /// Through the samples' places in the pixels whose corners are given.
     void rays(const Vec2* pixel, const SampleOf* of, int n, Ray* out) const;
@@ -56,8 +59,10 @@ private:
     std::optional<Hit> ground_hit(const Ray& ray, double end) const;
     Surfel ground_surfel(const Ray& ray, double distance) const;
     void surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const;
+    /// May a sample of the pixel be anything but empty?
+    bool may_meet(int x, int y) const { return open_ || coverage_.may_meet(x, y); }
     void trace(const Ray* rays, const SampleOf* of, int n, Rgba* seen) const;
-    void add_light(const Ray* rays, const SampleOf* of, const std::vector<Met>& met, Rgba* seen) const;
+    void add_light(const SampleOf* of, const Packet& met, Rgba* seen) const;
 
     const TracedScene& scene_;
     const Camera& camera_;
@@ -67,6 +72,8 @@ private:
     std::optional<Color> background_;
     std::optional<Ground> ground_;
     Material paper_{Material::Kind::diffuse};
+    Coverage coverage_;
+    bool open_;  // rays that meet nothing of the scene see something else than the background
 };
 
 /// Traces the round of the film, tile by tile, until it is made or `stop` says so; `progress` gets the samples traced since, from the calling
