@@ -34,6 +34,14 @@ Models model_of(const Curve& curve, const CurveForm& exact, double from, double 
         return r;
     }
     const Interval reach(std::max(curve.begin(), (m - h).lo), std::min(curve.end(), (m + h).hi));
+    if (const auto model = reach.lo < reach.hi ? curve(Polynomial::model_u(reach)) : Vec3<Polynomial>{Polynomial::nothing(), 0, 0}; model.x.exists() && model.y.exists() && model.z.exists()) {
+        const TaylorModel t = TaylorModel::linear(m - Interval(mid(reach)), h);
+        for (int axis = 0; axis < 3; ++axis) {
+            r[axis] = model_of(model[axis], t);
+            r[axis].widen(Interval(-model[axis].rest().f, model[axis].rest().f));
+        }
+        return r;
+    }
     Vec3<Interval> at[4], over[4];
     const Interval centre = clip(m, {curve.begin(), curve.end()});
     curve.taylor(centre, 3, at);

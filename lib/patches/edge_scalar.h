@@ -25,6 +25,8 @@ public:
     /// At one of these two; at another series nothing is known. Where the line is a break, of the piece in the cell.
     Vec3<EdgeScalar> of(const Curve& curve) const;
     EdgeScalar of(const Function& f) const;
+    /// Across the line, and just this number on it?
+    bool is(double value) const { return kind_ == Kind::across && c[0].is_number(value); }
     /// In the cell.
     double inner() const { return mid(cell_); }
 

@@ -1,6 +1,7 @@
 #include "scalar/quotient.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace isoparm {
 namespace {
@@ -29,11 +30,19 @@ Polynomial times(Polynomial p, const std::vector<Polynomial>& factors) {
     return p;
 }
 
+/// Intervals round outward always. What is exact in floating point, as 2 - 2 of Hermite's polynomials at their ends, stays a number here: only 0 has no denominators.
+bool is_point(const Quotient& a) { return a.is_number(a.over.exists() ? a.over.coefficient(0, 0).lo : 0); }
+double value(const Quotient& a) { return a.over.coefficient(0, 0).lo; }
+
 }  // namespace
 
 Quotient operator+(const Quotient& a, const Quotient& b) {
     if (a.is_number(0)) return b;
     if (b.is_number(0)) return a;
+    if (is_point(a) && is_point(b)) {
+        const double p = value(a), q = value(b), sum = p + q, of_q = sum - p, of_p = sum - of_q;  // Knuth's error of a sum
+        if (p - of_p == 0 && q - of_q == 0) return sum;
+    }
     if (a.under.empty() && b.under.empty()) return a.over + b.over;
     const auto more = missing(b.under, a.under);
     Quotient r(times(a.over, more) + times(b.over, missing(a.under, b.under)), a.under);
@@ -43,6 +52,10 @@ Quotient operator+(const Quotient& a, const Quotient& b) {
 
 Quotient operator*(const Quotient& a, const Quotient& b) {
     if (a.is_number(0) || b.is_number(0)) return {};
+    if (is_point(a) && is_point(b)) {
+        const double product = value(a) * value(b);
+        if (std::fabs(product) > 0x1p-900 && std::fma(value(a), value(b), -product) == 0) return product;
+    }
     Quotient r(a.over * b.over, a.under);
     r.under.insert(r.under.end(), b.under.begin(), b.under.end());
     return r;
