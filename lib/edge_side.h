@@ -2,8 +2,8 @@
 //
 // The line runs straight from `from` to `to`, s in [0,1]; its image is an edge of the patch, or a line between two of its cells. The jet
 // has s as its first variable and, as its second, the parameter across: x(p(s) + e cross). Exact up to rounding where the patch is
-// polynomial or rational (Patch::exact_cell); elsewhere by enclosures to third order, whose rest shrinks with the length of the piece to the
-// fourth power for positions, to the third for first derivatives and to the second for second ones.
+// polynomial or rational (Patch::exact_cell); elsewhere by models, whose rest shrinks with the length of the piece to the 6th, 5th and 4th power for positions, first and second derivatives, or
+// where there are none by enclosures to third order: to the 4th, 3rd and 2nd.
 #pragma once
 #include <array>
 #include <optional>

@@ -107,12 +107,11 @@ EdgeScalar kept_in(EdgeScalar x, double low, double high) {
 EdgeScalar cone(const SquareOfRadius&, const GregoryRatio&, const EdgeScalar& p, const EdgeScalar& q) {
     if (p.c[0].is_number(0)) return p * p;
     if (q.c[0].is_number(0)) return p * q - q * q;
-    EdgeScalar r;
-    for (Quotient& c : r.c) c = Polynomial::nothing();
-    const Polynomial one(1);
-    if (p.c[0].is_number(1)) r.c[0] = q.c[0] * Quotient(one, {one + q.c[0].over});
-    else if (q.c[0].is_number(1)) r.c[0] = p.c[0] * p.c[0] * Quotient(one, {one + p.c[0].over});
-    return r;
+    const EdgeScalar r = p + q;
+    const Quotient one(1.0), once(one.over, {r.c[0].over}), twice = once * once, slope = Quotient(-1.0) * r.c[1];
+    EdgeScalar inverse;
+    inverse.c[0] = once, inverse.c[1] = slope * twice, inverse.c[2] = slope * slope * (once * twice);  // p and q are linear in x
+    return square(p) * q * inverse;
 }
 
 Patch with_edge_forms(Patch patch, EdgeFormula formula) { return Patch(std::make_shared<WithEdgeForms>(std::move(patch), std::move(formula))); }

@@ -45,9 +45,8 @@ EdgeScalar kept_in(EdgeScalar x, double low, double high);
 inline double representative(const EdgeScalar& x) { return x.inner(); }
 Interval base(const EdgeScalar& x);  // for its type: constants are intervals
 
-/// Gregory's p^2 q / (p + q), where one of p and q is 0 or 1 on the line and the other one is not 0:
-///   on p = 0: p^2 + O(x^3)      on q = 0: p q - q^2 + O(x^3)      on p = 1: q / (1 + q) + O(x)      on q = 1: p^2 / (1 + p) + O(x)
-/// The last two are all that counts there, as (1-p)^2 and (1-q)^2 are its other factors; the terms that are left out do not exist.
+/// Gregory's p^2 q / (p + q), p and q linear in the parameters: where p is 0 on the line it is p^2 + O(x^3), where q is 0 p q - q^2 + O(x^3). At the corner itself second derivatives do
+/// not exist; these are their limits along the line.
 EdgeScalar cone(const SquareOfRadius&, const GregoryRatio&, const EdgeScalar& p, const EdgeScalar& q);
 
 using EdgeFormula = std::function<Vec3<EdgeScalar>(const EdgeScalar& u, const EdgeScalar& v)>;
