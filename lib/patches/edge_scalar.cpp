@@ -9,6 +9,14 @@
 namespace isoparm {
 namespace {
 
+/// Taylor coefficients to second order.
+std::array<Interval, 3> expanded(const Polynomial& p, const Interval& at) {
+    std::array<Interval, 3> a{};
+    for (int k = 0; k < 3; ++k)
+        for (int i = p.degree_u(); i >= k; --i) a[std::size_t(k)] = a[std::size_t(k)] * at + Interval(binomial(i, k)) * p.coefficient(i, 0);
+    return a;
+}
+
 class WithEdgeForms final : public ForwardingPatch {
 public:
     WithEdgeForms(Patch patch, EdgeFormula formula) : ForwardingPatch(std::move(patch)), formula_(std::move(formula)), lines_u_(patch_.lines_u()), lines_v_(patch_.lines_v()) {}
@@ -57,7 +65,20 @@ Vec3<EdgeScalar> EdgeScalar::of(const Curve& curve) const {
     Vec3<EdgeScalar> r;
     if (kind_ == Kind::across) {
         Vec3<Interval> a[3];
-        curve.taylor(side_, 2, a);
+        Vec3<Quotient> x = curve.quotient(Polynomial::variable_u(cell_));
+        const Polynomial under = common_denominator(x);
+        if (x.x.over.exists() && x.y.over.exists() && x.z.over.exists()) {  // its piece in the cell, even where its break differs from the line by rounding
+            const Interval at = Interval(c[0].over.coefficient(0, 0)) - Interval(mid(cell_));
+            const auto w = expanded(under, at);
+            for (int axis = 0; axis < 3; ++axis) {
+                const auto n = expanded(x[axis].over, at);
+                a[0][axis] = n[0] / w[0];
+                a[1][axis] = (n[1] - a[0][axis] * w[1]) / w[0];
+                a[2][axis] = (n[2] - a[1][axis] * w[1] - a[0][axis] * w[2]) / w[0];
+            }
+        } else {
+            curve.taylor(side_, 2, a);
+        }
         for (int axis = 0; axis < 3; ++axis)
             for (int k = 0; k < 3; ++k) r[axis].c[k] = Polynomial(a[k][axis]);
         return r;
