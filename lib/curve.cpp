@@ -20,9 +20,13 @@ struct Reparametrized {
         const double scale = (curve.end() - curve.begin()) / (end - begin);
         return curve(kept_in((t - begin) * scale + curve.begin(), curve.begin(), curve.end()));
     }
-    Vec3<Polynomial> operator()(const Polynomial& t) const {
+    Vec3<Polynomial> operator()(const Polynomial& t) const { return curve(place(t)); }
+    Vec3<Quotient> quotient(const Polynomial& t) const { return curve.quotient(place(t)); }
+
+private:
+    Polynomial place(const Polynomial& t) const {
         const double scale = (curve.end() - curve.begin()) / (end - begin);
-        return curve((t - Polynomial(begin)) * Polynomial(scale) + Polynomial(curve.begin()));
+        return (t - Polynomial(begin)) * Polynomial(scale) + Polynomial(curve.begin());
     }
 };
 

@@ -3,6 +3,7 @@
 // A Curve runs on numbers, packs, intervals, jets of these and exact polynomials. Immutable, cheap to copy, safe to call
 // from every thread. Its domain is [begin(), end()]; it is C1 there unless breaks() says otherwise.
 #pragma once
+#include <concepts>
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,9 +11,11 @@
 #include "function.h"
 #include "scalar/jet.h"
 #include "scalar/polynomial.h"
+#include "scalar/quotient.h"
 
 namespace isoparm {
 
+class EdgeScalar;
 class PiecewiseBezier;
 
 /// An interior parameter where derivatives of order continuity + 1 may jump.
@@ -36,6 +39,8 @@ public:
         /// The exact polynomial, where the curve is one over the range of t (or everywhere on its domain: then t may leave it). Of a model, a
         /// model where the curve is smooth over the range of t.
         virtual Vec3<Polynomial> exact(const Polynomial& t) const;
+        /// The same as quotients of polynomials; t is no model.
+        virtual Vec3<Quotient> quotient(const Polynomial& t) const { return Vec3<Quotient>(exact(t)); }
         /// Its exact (rational) Bezier pieces, where it has them.
         virtual const PiecewiseBezier* bezier() const { return nullptr; }
     };
@@ -58,6 +63,8 @@ public:
         return compose(a, t);
     }
     Vec3<Polynomial> operator()(const Polynomial& t) const { return impl_->exact(t); }
+    Vec3<Quotient> quotient(const Polynomial& t) const { return impl_->quotient(t); }
+    template <std::same_as<EdgeScalar> S> Vec3<S> operator()(const S& t) const { return t.of(*this); }
     Point derivative(double t) const {
         Point p[2];
         impl_->taylor(t, 1, p);
@@ -83,6 +90,10 @@ public:
     void taylor(const Pack& t, int order, Vec3<Pack>* out) const override { run(t, order, out); }
     void taylor(const Interval& t, int order, Vec3<Interval>* out) const override { run(t, order, out); }
     Vec3<Polynomial> exact(const Polynomial& t) const override { return f_(t); }
+    Vec3<Quotient> quotient(const Polynomial& t) const override {
+        if constexpr (requires { f_.quotient(t); }) return f_.quotient(t);
+        else return Vec3<Quotient>(f_(t));
+    }
 
 private:
     template <class T> void run(const T& t, int order, Vec3<T>* out) const {

@@ -48,7 +48,7 @@ void find_cuts(const Patch& patch, int k, int level, double at, EdgeCuts& cuts) 
 
 std::vector<std::vector<Polynomial>> triangle_forms(const Patch& patch, int edge) {
     std::vector<std::vector<Polynomial>> list;
-    for (auto form = patch.exact_cell(std::size_t(edge + 1), 0); has_triangle_form(form); form = patch.exact_cell(std::size_t(edge + 1), list.size())) list.push_back(std::move(form));
+    for (auto form = patch.exact_cell(std::size_t(edge + 1), 0); has_line_form(form); form = patch.exact_cell(std::size_t(edge + 1), list.size())) list.push_back(std::move(form));
     return list;
 }
 

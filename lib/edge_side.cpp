@@ -48,6 +48,14 @@ std::vector<Interval> recentred(const Polynomial& f, const Interval& x, const In
     return c;
 }
 
+/// Bit for bit, as whoever made it multiplied.
+bool is_square(const Polynomial& a, const Polynomial& of) {
+    const Polynomial b = of * of;
+    bool same = a.degree_u() == b.degree_u() && a.degree_v() == 0 && b.degree_v() == 0;
+    for (int k = 0; same && k <= a.degree_u(); ++k) same = a.coefficient(k, 0).lo == b.coefficient(k, 0).lo && a.coefficient(k, 0).hi == b.coefficient(k, 0).hi;
+    return same;
+}
+
 Interval step_of(double from, double to) { return Interval(to) - Interval(from); }
 Interval power(const Interval& x, int n) {
     Interval r(1);
@@ -130,7 +138,11 @@ EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : p
     const CellForm cell = form_beside(patch_, line.from, line.to, side);
     cell_ = cell.cell, exact_ = cell.form;
     if (exact_.empty()) return;
-    if (has_triangle_form(exact_)) sign_ = line.cross.x * side.x + line.cross.y * side.y > 0 ? 1 : -1;
+    if (has_line_form(exact_)) {
+        if (patch_.domain() == Domain::triangle) sign_ = line.cross.x * side.x + line.cross.y * side.y > 0 ? 1 : -1;
+        else sign_ = line.from.x == line.to.x ? line.cross.x : line.cross.y;
+        square_of_first_ = is_square(exact_[11], exact_[7]);
+    }
     whole_ = along_all();
     for (const Jet2& x : whole_)
         for (const TaylorModel& c : x.c)
@@ -148,7 +160,7 @@ EdgeSide::EdgeSide(Patch patch, const ParameterLine& line, const Vec2& side) : p
 
 // With (x,y) = middle + d step + b cross: the powers of b to the second are polynomials in d = 2 s - 1, whose derivatives are those by s, halved.
 std::vector<Jet2> EdgeSide::along_all() const {
-    if (has_triangle_form(exact_)) {
+    if (has_line_form(exact_)) {
         auto form = form_at(TaylorModel::linear(0.5, 0.5));
         for (std::size_t k = 4; k < form.size(); ++k) form[k].c[3] = 0.0;  // nobody asks for these
         for (std::size_t k = 8; k < form.size(); ++k) form[k].c[1] = 0.0;
@@ -199,7 +211,7 @@ void EdgeSide::find_directions() {
         Vec3<TaylorModel>& t = directions_[std::size_t(n - 1)];
         for (int axis = 0; axis < 3; ++axis) {
             const auto& x = whole_[std::size_t(axis)].c;
-            if (n == 2 && has_triangle_form(exact_)) t[axis] = TaylorModel(sign_) * whole_[std::size_t(4 + axis)].c[0];
+            if (n == 2 && has_line_form(exact_)) t[axis] = TaylorModel(sign_) * whole_[std::size_t(4 + axis)].c[0];
             else t[axis] = whole_.size() == 3 ? x[n] : x[n] * whole_[3].c[0] - x[0] * whole_[3].c[n];
             if (!t[axis].exact()) return;
         }
@@ -229,20 +241,25 @@ EdgeSide::Jet EdgeSide::jet(double middle, double half) const {
     return of_form(form);
 }
 
-EdgeSide::Jet EdgeSide::jet(const TaylorModel& s) const { return exact_.empty() ? enclosed(s) : of_form(form_at(s)); }
+EdgeSide::Jet EdgeSide::jet(const TaylorModel& s) const {
+    if (!exact_.empty()) return of_form(form_at(s));
+    const auto model = modelled(s);
+    return model ? *model : enclosed(s);
+}
 
 EdgeSide::Jet EdgeSide::of_form(const std::vector<Jet2>& form) const {
-    if (has_triangle_form(exact_)) return of_triangle_form(form);
+    if (has_line_form(exact_)) return of_line_form(form);
     if (form.size() == 3) return {form[0], form[1], form[2]};
     return {form[0] / form[3], form[1] / form[3], form[2] / form[3]};
 }
 
 std::vector<Jet2> EdgeSide::form_at(const TaylorModel& s) const {
-    if (has_triangle_form(exact_)) {
-        // t runs as the second barycentric coordinate falls: on E1 v, on E2 w, on E3 u.
-        const bool first = line_.from.x == 0 && line_.to.x == 0, second = !first && line_.from.y == 0 && line_.to.y == 0;
-        const Interval from = (first ? Interval(1) - Interval(line_.from.y) : Interval(second ? line_.from.x : line_.from.y)) - Interval(mid(part_of_edge(exact_)));
-        const Jet2 t = variable(from, first ? step_of(line_.to.y, line_.from.y) : second ? step_of(line_.from.x, line_.to.x) : step_of(line_.from.y, line_.to.y), 0, s);
+    if (has_line_form(exact_)) {
+        // On a triangle t runs as the second barycentric coordinate falls: on E1 v, on E2 w, on E3 u.
+        const bool along_u = line_.from.y == line_.to.y, falls = patch_.domain() == Domain::triangle && !along_u && line_.from.x == line_.to.x;
+        const double a = along_u ? line_.from.x : line_.from.y, b = along_u ? line_.to.x : line_.to.y;
+        const Interval from = (falls ? Interval(1) - Interval(a) : Interval(a)) - Interval(mid(part_of_edge(exact_)));
+        const Jet2 t = variable(from, falls ? step_of(b, a) : step_of(a, b), 0, s);
         std::vector<Jet2> form;
         for (std::size_t k = 0; k < 16; ++k) form.push_back(evaluate(exact_[k], t, t));
         return form;

@@ -2,10 +2,11 @@
 //
 // The line runs straight from `from` to `to`, s in [0,1]; its image is an edge of the patch, or a line between two of its cells. The jet
 // has s as its first variable and, as its second, the parameter across: x(p(s) + e cross). Exact up to rounding where the patch is
-// polynomial or rational (Patch::exact_cell); elsewhere by enclosures to third order, whose rest shrinks with the length of the piece to the
-// fourth power for positions, to the third for first derivatives and to the second for second ones.
+// polynomial or rational (Patch::exact_cell); elsewhere by models, whose rest shrinks with the length of the piece to the 6th, 5th and 4th power for positions, first and second derivatives, or
+// where there are none by enclosures to third order: to the 4th, 3rd and 2nd.
 #pragma once
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "patch.h"
@@ -45,10 +46,11 @@ public:
 
 private:
     std::vector<JetUV<TaylorModel, 2>> along_all() const;
-    Jet of_triangle_form(const std::vector<JetUV<TaylorModel, 2>>& form) const;
+    Jet of_line_form(const std::vector<JetUV<TaylorModel, 2>>& form) const;
     Jet of_form(const std::vector<JetUV<TaylorModel, 2>>& form) const;
     std::vector<JetUV<TaylorModel, 2>> form_at(const TaylorModel& s) const;
     Jet enclosed(const TaylorModel& s) const;
+    std::optional<Jet> modelled(const TaylorModel& s) const;
     Box box(const Interval& s) const;
     void find_directions();
 
@@ -56,7 +58,8 @@ private:
     ParameterLine line_;
     Rect cell_;
     std::vector<Polynomial> exact_;
-    double sign_ = 1;  // beside an edge of a triangle: of line.cross, 1 inward
+    double sign_ = 1;  // of a form beside a line: of line.cross, 1 where x grows
+    bool square_of_first_ = false;  // the denominator of second derivatives is that of the first ones, squared
     std::vector<JetUV<TaylorModel, 2>> whole_;  // over all of s in [0,1], where that is exact
     std::array<Vec3<TaylorModel>, 2> directions_;  // then of S_s and S_cross, without the zeros at the ends
     bool has_directions_ = false;

@@ -12,6 +12,8 @@
 
 namespace isoparm {
 
+class EdgeScalar;
+
 class Function {
 public:
     /// Taylor coefficients out[0..order], order <= 3, at t.
@@ -39,6 +41,7 @@ public:
         return compose(a, t);
     }
     Polynomial operator()(const Polynomial& t) const { return impl_->exact(t); }
+    template <std::same_as<EdgeScalar> S> S operator()(const S& t) const { return t.of(*this); }
 
 private:
     std::shared_ptr<const Concept> impl_;

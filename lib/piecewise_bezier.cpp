@@ -130,20 +130,22 @@ template <> void piece_taylor(const BezierPiece& piece, const Interval& t, int o
 }
 
 /// Of a rational piece: numerators over the denominator, each by de Casteljau's scheme.
-Vec3<Polynomial> quotient_model(const BezierPiece& piece, const Polynomial& t) {
-    const Polynomial s = (t - Polynomial(piece.begin)) / Polynomial(Interval(piece.end) - Interval(piece.begin)), r = Polynomial(1) - s;
-    const auto form = [&](auto coefficient) {
-        std::vector<Polynomial> b;
-        for (std::size_t i = 0; i < piece.points.size(); ++i) b.push_back(Polynomial(coefficient(i)));
-        for (; b.size() > 1; b.pop_back())
-            for (std::size_t i = 0; i + 1 < b.size(); ++i) b[i] = r * b[i] + s * b[i + 1];
-        return b[0];
-    };
-    const Polynomial w = form([&](std::size_t i) { return Interval(piece.weights[i]); });
+struct RationalForm {
     Vec3<Polynomial> x;
-    for (int axis = 0; axis < 3; ++axis) x[axis] = form([&](std::size_t i) { return Interval(piece.weights[i]) * Interval(piece.points[i][axis]); }) / w;
-    return x;
-}
+    Polynomial w;
+    RationalForm(const BezierPiece& piece, const Polynomial& t) {
+        const Polynomial s = (t - Polynomial(piece.begin)) / Polynomial(Interval(piece.end) - Interval(piece.begin)), r = Polynomial(1) - s;
+        const auto form = [&](auto coefficient) {
+            std::vector<Polynomial> b;
+            for (std::size_t i = 0; i < piece.points.size(); ++i) b.push_back(Polynomial(coefficient(i)));
+            for (; b.size() > 1; b.pop_back())
+                for (std::size_t i = 0; i + 1 < b.size(); ++i) b[i] = r * b[i] + s * b[i + 1];
+            return b[0];
+        };
+        w = form([&](std::size_t i) { return Interval(piece.weights[i]); });
+        for (int axis = 0; axis < 3; ++axis) x[axis] = form([&](std::size_t i) { return Interval(piece.weights[i]) * Interval(piece.points[i][axis]); });
+    }
+};
 
 }  // namespace
 
@@ -216,16 +218,34 @@ void PiecewiseBezier::taylor(const Interval& t, int order, Vec3<Interval>* out) 
     for (int j = smooth + 2; j <= order; ++j) out[j] = {Interval::all(), Interval::all(), Interval::all()};
 }
 
-Vec3<Polynomial> PiecewiseBezier::exact(const Polynomial& t) const {
-    const Vec3<Polynomial> none{Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
-    if (!t.exists()) return none;
+/// The piece that holds the range of t.
+const BezierPiece* PiecewiseBezier::piece_over(const Polynomial& t) const {
+    if (!t.exists()) return nullptr;
     const Interval range = t.range();
     const auto& piece = pieces_[piece_at(mid(range))];
     const double slack = t.is_model() ? break_rounding * (end() - begin()) : 1e-9 * (piece.end - piece.begin);
-    // A lone piece is the same polynomial everywhere: on a triangle w = 1-u-v is one of a square, where it leaves [0,1].
-    const bool inside = range.lo >= piece.begin - slack && range.hi <= piece.end + slack;
-    if (!(inside || pieces_.size() == 1)) return none;
-    if (!piece.weights.empty()) return t.is_model() ? quotient_model(piece, t) : none;
+    // A lone piece is the same function everywhere: on a triangle w = 1-u-v is one of a square, where it leaves [0,1].
+    return pieces_.size() == 1 || (range.lo >= piece.begin - slack && range.hi <= piece.end + slack) ? &piece : nullptr;
+}
+
+Vec3<Quotient> PiecewiseBezier::quotient(const Polynomial& t) const {
+    const BezierPiece* piece = piece_over(t);
+    if (!piece || piece->weights.empty() || piece->degree() == 0) return Vec3<Quotient>(exact(t));
+    const RationalForm form(*piece, t);
+    return {Quotient(form.x.x, {form.w}), Quotient(form.x.y, {form.w}), Quotient(form.x.z, {form.w})};
+}
+
+Vec3<Polynomial> PiecewiseBezier::exact(const Polynomial& t) const {
+    const Vec3<Polynomial> none{Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()};
+    const BezierPiece* found = piece_over(t);
+    if (!found) return none;
+    const BezierPiece& piece = *found;
+    if (!piece.weights.empty()) {
+        if (!t.is_model()) return none;
+        const RationalForm form(piece, t);
+        return {form.x.x / form.w, form.x.y / form.w, form.x.z / form.w};
+    }
+    const Interval range = t.range();
     const double m = std::clamp(mid(range), piece.begin, piece.end);
     std::array<Vec3<Interval>, max_degree + 1> a;
     piece_taylor(piece, Interval(m), piece.degree(), a.data());

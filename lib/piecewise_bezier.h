@@ -29,6 +29,7 @@ public:
     void taylor(const Pack& t, int order, Vec3<Pack>* out) const override;
     void taylor(const Interval& t, int order, Vec3<Interval>* out) const override;
     Vec3<Polynomial> exact(const Polynomial& t) const override;
+    Vec3<Quotient> quotient(const Polynomial& t) const override;
     const PiecewiseBezier* bezier() const override { return this; }
 
     const std::vector<BezierPiece>& pieces() const { return pieces_; }
@@ -37,6 +38,7 @@ public:
 
 private:
     std::size_t piece_at(double t) const;
+    const BezierPiece* piece_over(const Polynomial& t) const;
     std::vector<BezierPiece> pieces_;
     std::vector<int> continuity_;
 };

@@ -8,17 +8,40 @@ namespace {
 
 using Models = Vec3<TaylorModel>;
 
-/// A curve over [from, to], `exact` its polynomials there if it has them, as a model over [middle - half, middle + half] of s in [0,1].
-Models model_of(const Curve& curve, const Vec3<Polynomial>& exact, double from, double to, double middle, double half) {
+/// A curve as numerators and their denominator, if it is a quotient between two breaks.
+struct CurveForm {
+    Vec3<Quotient> x;
+    Polynomial w;
+    CurveForm(const Curve& curve, double from, double to) : x(curve.quotient(Polynomial::variable_u(Interval(from, to)))), w(common_denominator(x)) {}
+    bool exists() const { return x.x.over.exists() && x.y.over.exists() && x.z.over.exists() && w.exists(); }
+};
+TaylorModel model_of(const Polynomial& p, const TaylorModel& t) {
+    TaylorModel r;
+    for (int k = p.degree_u(); k >= 0; --k) r = r * t + TaylorModel(p.coefficient(k, 0));
+    return r;
+}
+
+/// A curve over [from, to] as a model over [middle - half, middle + half] of s in [0,1].
+Models model_of(const Curve& curve, const CurveForm& exact, double from, double to, double middle, double half) {
     const Interval step = Interval(to) - Interval(from), m = Interval(from) + step * Interval(middle), h = step * Interval(half);
     Models r;
-    if (exact.x.exists() && exact.y.exists() && exact.z.exists()) {
-        const TaylorModel t = TaylorModel::linear(m - Interval(mid(Interval(from, to))), h);
-        for (int axis = 0; axis < 3; ++axis)
-            for (int k = exact[axis].degree_u(); k >= 0; --k) r[axis] = r[axis] * t + TaylorModel(exact[axis].coefficient(k, 0));
+    if (exact.exists()) {
+        const TaylorModel t = TaylorModel::linear(m - Interval(mid(Interval(from, to))), h), w = model_of(exact.w, t);
+        for (int axis = 0; axis < 3; ++axis) {
+            r[axis] = model_of(exact.x[axis].over, t);
+            if (exact.w.degree_u() > 0) r[axis] = r[axis] / w;
+        }
         return r;
     }
     const Interval reach(std::max(curve.begin(), (m - h).lo), std::min(curve.end(), (m + h).hi));
+    if (const auto model = reach.lo < reach.hi ? curve(Polynomial::model_u(reach)) : Vec3<Polynomial>{Polynomial::nothing(), 0, 0}; model.x.exists() && model.y.exists() && model.z.exists()) {
+        const TaylorModel t = TaylorModel::linear(m - Interval(mid(reach)), h);
+        for (int axis = 0; axis < 3; ++axis) {
+            r[axis] = model_of(model[axis], t);
+            r[axis].widen(Interval(-model[axis].rest().f, model[axis].rest().f));
+        }
+        return r;
+    }
     Vec3<Interval> at[4], over[4];
     const Interval centre = clip(m, {curve.begin(), curve.end()});
     curve.taylor(centre, 3, at);
@@ -61,7 +84,7 @@ JumpBound bound_residual(const Patch& of, const Promise& promise, double toleran
         const auto place = [&](double s) { return s == 0 ? from : s == 1 ? to : Vec2{from.x + s * (to.x - from.x), from.y + s * (to.y - from.y)}; };
         const EdgeSide side(patch, {place(s0), place(s1), cross}, cross);
         EdgeSegment e{side, side, {}, {}, {}, promise.derivative, {}};
-        e.curve = [curve, exact = curve(Polynomial::variable_u(Interval(t0, t1))), a = t0, b = t1](double middle, double half) { return model_of(curve, exact, a, b, middle, half); };
+        e.curve = [curve, exact = CurveForm(curve, t0, t1), a = t0, b = t1](double middle, double half) { return model_of(curve, exact, a, b, middle, half); };
         segments.push_back(std::move(e));
     }
     JumpLimits limits;

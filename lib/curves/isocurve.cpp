@@ -4,6 +4,7 @@
 
 #include "curves/lane_by_lane.h"
 #include "error.h"
+#include "exact_parts.h"
 
 namespace isoparm {
 namespace {
@@ -29,7 +30,53 @@ public:
     void taylor(const Pack& t, int order, Vec3<Pack>* out) const override { lane_by_lane(*this, t, order, out); }
     void taylor(const Interval& t, int order, Vec3<Interval>* out) const override { store(enclose(t).over, order, out); }
 
+    /// On a line of cells of a patch that has exact forms there, and wherever cells have exact forms.
+    Vec3<Quotient> quotient(const Polynomial& t) const override {
+        const bool along_u = along_ == Along::u;
+        const auto lines = along_u ? patch_.lines_u() : patch_.lines_v(), others = along_u ? patch_.lines_v() : patch_.lines_u();
+        const Interval range = t.range();
+        const std::size_t i = cell_at(lines, mid(range)), j = cell_at(others, at_);
+        const double slack = 1e-9 * (lines[i + 1] - lines[i]);
+        if (range.lo < lines[i] - slack || range.hi > lines[i + 1] + slack) return none();
+        const std::size_t m = along_u ? i : j, n = along_u ? j : i;
+        auto form = patch_.exact_cell(m, n);
+        const double centre = mid(Interval(lines[i], lines[i + 1]));
+        Interval beside = Interval(at_) - Interval(mid(Interval(others[j], others[j + 1])));
+        const bool line_form = has_edge_forms(form);
+        if (line_form) {
+            if (at_ != others[j] && at_ != others[j + 1]) return none();
+            const bool upper = at_ == others[j + 1];
+            const std::size_t edge = along_u ? (upper ? 2 : 0) : (upper ? 1 : 3);
+            form = patch_.exact_cell(m + (edge + 1) * (patch_.lines_u().size() - 1), n);
+            if (!has_line_form(form)) return none();
+            form.resize(form[3].degree_u() > 0 ? 4 : 3);
+            beside = Interval(0);
+        } else if (form.size() != 3 && form.size() != 4) {
+            return none();
+        }
+        const Polynomial step = t - Polynomial(centre);
+        const bool first = along_u || line_form;  // of the two variables of the form
+        const auto on_line = [&](const Polynomial& f) {
+            Polynomial sum;
+            for (int k = first ? f.degree_u() : f.degree_v(); k >= 0; --k) {
+                Interval c(0);
+                for (int l = first ? f.degree_v() : f.degree_u(); l >= 0; --l) c = c * beside + (first ? f.coefficient(k, l) : f.coefficient(l, k));
+                sum = sum * step + Polynomial(c);
+            }
+            return sum;
+        };
+        Vec3<Quotient> x;
+        for (int axis = 0; axis < 3; ++axis) x[axis] = form.size() == 4 ? Quotient(on_line(form[std::size_t(axis)]), {on_line(form[3])}) : Quotient(on_line(form[std::size_t(axis)]));
+        return x;
+    }
+
 private:
+    static Vec3<Quotient> none() { return {Polynomial::nothing(), Polynomial::nothing(), Polynomial::nothing()}; }
+    static std::size_t cell_at(const std::vector<double>& lines, double t) {
+        std::size_t i = 0;
+        while (i + 2 < lines.size() && t >= lines[i + 1]) ++i;
+        return i;
+    }
     /// A patch does not tell what jumps at its breaks: 1 if the slopes of both sides agree up to rounding, else 0.
     int continuity(double t) const {
         Vec3<double> low[2], high[2];

@@ -22,7 +22,9 @@ struct AffineParameter {
         return list;
     }
     template <class S> auto operator()(const S& t) const { return curve(kept_in(t * slope + offset, curve.begin(), curve.end())); }
-    Vec3<Polynomial> operator()(const Polynomial& t) const { return curve(t * Polynomial(slope) + Polynomial(offset)); }
+    Vec3<Polynomial> operator()(const Polynomial& t) const { return curve(place(t)); }
+    Vec3<Quotient> quotient(const Polynomial& t) const { return curve.quotient(place(t)); }
+    Polynomial place(const Polynomial& t) const { return t * Polynomial(slope) + Polynomial(offset); }
 };
 
 struct Moved {
@@ -31,6 +33,7 @@ struct Moved {
     double begin = curve.begin(), end = curve.end();
     std::vector<Break> breaks() const { return curve.breaks(); }
     template <class S> auto operator()(const S& t) const { return map.point(curve(t)); }
+    Vec3<Quotient> quotient(const Polynomial& t) const { return map.point(curve.quotient(t)); }
 };
 
 struct Combination {
@@ -41,6 +44,11 @@ struct Combination {
     template <class S> auto operator()(const S& t) const {
         auto sum = S(weights[0]) * curves[0](t);
         for (std::size_t k = 1; k < curves.size(); ++k) sum = sum + S(weights[k]) * curves[k](t);
+        return sum;
+    }
+    Vec3<Quotient> quotient(const Polynomial& t) const {
+        Vec3<Quotient> sum;
+        for (std::size_t k = 0; k < curves.size(); ++k) sum = sum + Quotient(weights[k]) * curves[k].quotient(t);
         return sum;
     }
 };

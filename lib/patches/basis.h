@@ -94,6 +94,8 @@ public:
         const Interval width = Interval(nodes_[cell + 1]) - Interval(nodes_[cell]);
         S x = t - nodes_[cell];
         if (width.lo != 1 || width.hi != 1) x = x * constant_for<S>(Interval(1) / width);
+        if constexpr (requires { t.is(0.0); })  // on a line: 1 at the end of the cell, and not up to rounding, as other blends are 0 there
+            if (t.is(nodes_[cell + 1])) x.c[0] = Polynomial(1);
         if constexpr (std::is_same_v<S, Polynomial>) return x;
         else return kept_in(x, 0, 1);
     }

@@ -1,7 +1,7 @@
 #include "patches/cone.h"
 
 #include "error.h"
-#include "patch_model.h"
+#include "patches/edge_scalar.h"
 
 namespace isoparm {
 namespace {
@@ -19,7 +19,7 @@ struct Cone {
 
 Patch make_cone(const Curve& curve, const Point& apex) {
     if (!finite(apex)) throw_input("apex: found a number that is not finite");
-    return make_patch(Cone{reparametrized(curve, 0, 1), apex});
+    return make_patch_with_edges(Cone{reparametrized(curve, 0, 1), apex});
 }
 
 }  // namespace isoparm

@@ -1,12 +1,13 @@
 #include "patches/coons.h"
 
 #include "patches/compatibility.h"
+#include "patches/edge_scalar.h"
 
 namespace isoparm {
 namespace {
 
 template <class Basis> Patch coons(const Basis& basis, const CoonsCurves& c, Part part) {
-    return make_patch(BooleanSum<Basis>{basis, basis, {c.d0, c.d1}, {c.c0, c.c1}, {{c.c0(0), c.c1(0)}, {c.c0(1), c.c1(1)}}, part});
+    return make_patch_with_edges(BooleanSum<Basis>{basis, basis, {c.d0, c.d1}, {c.c0, c.c1}, {{c.c0(0), c.c1(0)}, {c.c0(1), c.c1(1)}}, part});
 }
 
 }  // namespace

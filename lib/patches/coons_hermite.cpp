@@ -19,12 +19,11 @@ HermiteNetwork network_of(const HermiteData& data) {
 }  // namespace
 
 Patch make_coons_hermite(const HermiteData& data, Twist twist, Part part) {
-    const HermiteSurface s = hermite_surface(network_of(data), twist, true, part);
-    return with_edge_forms(s, make_patch(s));
+    return make_patch_with_edges(hermite_surface(network_of(data), twist, true, part));
 }
 
 Patch gregory_on_edges(const HermiteData& data, bool of_f, double& slack) {
-    return make_patch(on_edges(hermite_surface(network_of(data), Twist::gregory, true, Part::sum), of_f, &slack));
+    return make_patch_with_edges(on_edges(hermite_surface(network_of(data), Twist::gregory, true, Part::sum), of_f, &slack));
 }
 
 }  // namespace isoparm

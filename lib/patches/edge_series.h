@@ -66,6 +66,7 @@ struct EdgeForm {
     Polynomial3 value, across, second, extra;
     Polynomial under[4] = {1, 1, 1, 1};
 
+    EdgeForm() = default;
     explicit EdgeForm(const Series3& s) {
         for (int axis = 0; axis < 3; ++axis) value[axis] = s[axis].c[0], across[axis] = s[axis].c[1], second[axis] = s[axis].c[2];
     }

@@ -1,6 +1,7 @@
 #include "patches/generalized_coons.h"
 
 #include "patches/compatibility.h"
+#include "patches/edge_scalar.h"
 
 namespace isoparm {
 namespace {
@@ -110,7 +111,7 @@ Patch make_generalized_coons(const GeneralizedCoons& data, Part part) {
             require_equal("u functional " + std::to_string(i) + " of " + name("g", j) + " = v functional " + std::to_string(j) + " of " + name("f", i), corner[i][j],
                           apply(data.v[j], f[i]), size);
         }
-    return make_patch(BooleanSum<FunctionBasis>{basis_u, basis_v, f, g, corner, part, rect});
+    return make_patch_with_edges(BooleanSum<FunctionBasis>{basis_u, basis_v, f, g, corner, part, rect});
 }
 
 }  // namespace isoparm

@@ -1,12 +1,13 @@
 #include "patches/gordon.h"
 
 #include "patches/compatibility.h"
+#include "patches/edge_scalar.h"
 
 namespace isoparm {
 namespace {
 
 template <class Basis> Patch gordon(const Basis& u, const Basis& v, std::vector<Curve> f, std::vector<Curve> g, Grid<Point> corner, Part part, const Rect& rect) {
-    return make_patch(BooleanSum<Basis>{u, v, std::move(f), std::move(g), std::move(corner), part, rect});
+    return make_patch_with_edges(BooleanSum<Basis>{u, v, std::move(f), std::move(g), std::move(corner), part, rect});
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "patches/boolean_sum.h"
 #include "patches/coons_hermite.h"
-#include "scalar/cone.h"
+#include "patches/edge_scalar.h"
 
 namespace isoparm {
 
@@ -43,9 +43,6 @@ struct HermiteSurface {
         return x;
     }
 };
-
-/// `model`: the surface as a patch. The same with exact forms at the edges of its cells, where the curves are polynomials (exact_parts.h).
-Patch with_edge_forms(HermiteSurface surface, Patch model);
 
 /// Curves and cross derivatives in the order of a HermiteBasis, over [0,n] and [0,m].
 struct HermiteNetwork {

@@ -2,6 +2,7 @@
 
 #include "error.h"
 #include "patches/boolean_sum.h"
+#include "patches/edge_scalar.h"
 
 namespace isoparm {
 
@@ -10,7 +11,7 @@ Patch make_lagrange(const std::vector<Curve>& curves, const std::vector<double>&
     // P2 alone: the surface interpolates across v.
     BooleanSum<LinearBasis, LagrangeBasis> surface{{}, LagrangeBasis(nodes), {}, {}, {}, Part::P2, {curves[0].begin(), curves[0].end(), nodes.front(), nodes.back()}};
     for (const Curve& c : curves) surface.g.push_back(reparametrized(c, curves[0].begin(), curves[0].end()));
-    return make_patch(std::move(surface));
+    return make_patch_with_edges(std::move(surface));
 }
 
 }  // namespace isoparm

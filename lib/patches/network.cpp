@@ -52,8 +52,7 @@ Patch make(const Network& net, const CrossDerivatives& cross, Twist twist, bool 
     h.name = [](char family, std::size_t k) {
         return name(family == 'f' ? (k % 2 ? "A" : "a") : (k % 2 ? "B" : "b"), k / 2);
     };
-    const HermiteSurface s = hermite_surface(h, twist, tangents_agree, part);
-    return with_edge_forms(s, make_patch(s));
+    return make_patch_with_edges(hermite_surface(h, twist, tangents_agree, part));
 }
 
 }  // namespace

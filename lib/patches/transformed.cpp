@@ -57,7 +57,7 @@ public:
         const auto x = patch_.exact_cell(i, j);
         if (x.size() < 3) return x;  // nothing, or parts
         auto y = x;  // denominators stay
-        for (std::size_t first = 0; first + 3 <= x.size(); first += 4)  // a position; after it, derivatives (has_triangle_form)
+        for (std::size_t first = 0; first + 3 <= x.size(); first += 4)  // a position; after it, derivatives (has_line_form)
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 y[first + axis] = first > 0 ? Polynomial(0) : (x.size() >= 4 ? x[3] : Polynomial(1)) * Polynomial(map_.m[axis][3]);
                 for (std::size_t k = 0; k < 3; ++k) y[first + axis] = y[first + axis] + x[first + k] * Polynomial(map_.m[axis][k]);

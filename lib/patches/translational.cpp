@@ -1,7 +1,7 @@
 #include "patches/translational.h"
 
-#include "patch_model.h"
 #include "patches/compatibility.h"
+#include "patches/edge_scalar.h"
 
 namespace isoparm {
 namespace {
@@ -34,12 +34,12 @@ struct TranslationalBlend {
 Patch make_translational(const Curve& c, const Curve& d) {
     const Curve x = reparametrized(c, 0, 1), y = reparametrized(d, 0, 1);
     require_equal("c(0) = d(0)", x(0), y(0), size_of({&x, &y}));
-    return make_patch(Translational{x, y, x(0)});
+    return make_patch_with_edges(Translational{x, y, x(0)});
 }
 
 Patch make_translational_blend(const CoonsCurves& curves) {
     const CoonsCurves x = closed_frame(curves);
-    return make_patch(TranslationalBlend{x, x.c0(0), x.c1(0), x.c0(1), x.c1(1)});
+    return make_patch_with_edges(TranslationalBlend{x, x.c0(0), x.c1(0), x.c0(1), x.c1(1)});
 }
 
 }  // namespace isoparm

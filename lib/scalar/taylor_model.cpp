@@ -1,10 +1,48 @@
 #include "scalar/taylor_model.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace isoparm {
 namespace {
 
-/// All values of d^k.
-Interval power(int k) { return k == 0 ? Interval(1) : k % 2 == 0 ? Interval(0, 1) : Interval(-1, 1); }
+/// All values of c d^k, k > 0.
+Interval with_power(const Interval& c, int k) { return k % 2 == 0 ? Interval(std::min(c.lo, 0.0), std::max(c.hi, 0.0)) : Interval(-mag(c), mag(c)); }
+
+/// Coefficients as numbers with the errors that they may have.
+struct Numbers {
+    int degree;
+    double x[TaylorModel::order + 1], error[TaylorModel::order + 1];
+    explicit Numbers(const TaylorModel& a) : degree(a.degree()) {
+        for (int k = 0; k <= degree; ++k) {
+            const Interval c = a.coefficient(k);
+            x[k] = mid(c), error[k] = c.lo == c.hi ? 0 : rad(c);
+        }
+    }
+};
+/// Coefficients of the product, in plain arithmetic: of x y, with |x - p| <= a and |y - q| <= b, p q is off by (|p| + a) b + a |q|, and a sum of n rounded products by n + 1 units of the sum of
+/// their sizes. Errors are sums of at most 48 numbers that are not negative: kSafe makes up for their rounding, kTiny for what underflows.
+struct Products {
+    static constexpr int most = 2 * TaylorModel::order + 1;
+    static constexpr double kSafe = 1 + 1e-12;
+    double sum[most]{}, size[most]{}, error[most]{};
+    Interval operator[](int k) const { return error[k] == 0 ? Interval(0) : checked(rounding::down(sum[k] - error[k]), rounding::up(sum[k] + error[k])); }
+
+    Products(const Numbers& a, const Numbers& b) {
+        for (int i = 0; i <= a.degree; ++i) {
+            const double p = a.x[i], p_size = std::fabs(p), p_error = a.error[i], p_most = p_size + p_error;
+            if (p_most == 0) continue;
+            for (int j = 0; j <= b.degree; ++j) {
+                const double q = b.x[j], q_size = std::fabs(q);
+                sum[i + j] += p * q;
+                size[i + j] += p_size * q_size;
+                error[i + j] += p_most * b.error[j] + p_error * q_size + (q == 0 && b.error[j] == 0 ? 0 : rounding::kTiny);
+            }
+        }
+        const double units = (std::min(a.degree, b.degree) + 3) * 0x1p-53;
+        for (int k = 0; k <= a.degree + b.degree; ++k) error[k] = (error[k] + units * size[k]) * kSafe;
+    }
+};
 
 }  // namespace
 
@@ -37,7 +75,7 @@ void TaylorModel::set(int k, const Interval& c) {
 Interval TaylorModel::range() const {
     if (!bounded()) return Interval::all();
     Interval sum = coefficient(0) + rest_;
-    for (int k = 3; k <= degree_; ++k) sum = sum + c_[std::size_t(k)] * power(k);
+    for (int k = 3; k <= degree_; ++k) sum = sum + with_power(c_[std::size_t(k)], k);
     const Interval c1 = coefficient(1), c2 = coefficient(2);
     const double p = mid(c1), q = mid(c2);
     const Interval p2 = Interval(p), q2 = Interval(q);
@@ -75,7 +113,7 @@ TaylorModel TaylorModel::restricted(double middle, double half) const {
 void TaylorModel::trim() {
     double most = 0;
     for (int k = 0; k <= degree_; ++k) most = std::max(most, mag(c_[std::size_t(k)]));
-    for (; degree_ > 0 && mag(c_[std::size_t(degree_)]) <= 0x1p-64 * most; --degree_) rest_ = rest_ + c_[std::size_t(degree_)] * power(degree_);
+    for (; degree_ > 0 && mag(c_[std::size_t(degree_)]) <= 0x1p-64 * most; --degree_) rest_ = rest_ + with_power(c_[std::size_t(degree_)], degree_);
 }
 
 TaylorModel operator+(const TaylorModel& a, const TaylorModel& b) {
@@ -107,12 +145,11 @@ TaylorModel operator*(const TaylorModel& a, const TaylorModel& b) {
         return r;
     }
     if (a.degree_ >= 0 && b.degree_ >= 0) {
+        const Products product{Numbers(a), Numbers(b)};
         Interval above(0);
         for (int k = a.degree_ + b.degree_; k >= 0; --k) {
-            Interval sum(0);
-            for (int i = std::max(0, k - b.degree_); i <= std::min(k, a.degree_); ++i) sum = sum + a.c_[std::size_t(i)] * b.c_[std::size_t(k - i)];
-            if (k <= TaylorModel::order) r.set(k, sum);
-            else above = above + sum * power(k);
+            if (k <= TaylorModel::order) r.set(k, product[k]);
+            else above = above + with_power(product[k], k);
         }
         r.rest_ = r.rest_ + above;
     }

@@ -4,15 +4,21 @@ namespace isoparm {
 
 using Jet2 = JetUV<TaylorModel, 2>;
 
-// Beside an edge of a triangle: from the four parts of has_triangle_form(), functions along the edge. Numbers are denominators 1, and no f3.
-EdgeSide::Jet EdgeSide::of_triangle_form(const std::vector<Jet2>& form) const {
+// From the four parts of has_line_form(), functions along the line. Numbers are denominators 1, and no f3.
+EdgeSide::Jet EdgeSide::of_line_form(const std::vector<Jet2>& form) const {
     const auto has = [&](std::size_t k) { return exact_[4 * k + 3].degree_u() > 0; };
     const auto inverse = [&](std::size_t k) { return TaylorModel(1.0) / form[4 * k + 3].c[0]; };
-    const TaylorModel sign(sign_), first = has(1) ? inverse(1) : TaylorModel(), second = has(2) ? inverse(2) : TaylorModel(), extra = has(3) ? inverse(3) : TaylorModel();
+    const TaylorModel sign(sign_), along = has(0) ? inverse(0) : TaylorModel(), first = has(1) ? inverse(1) : TaylorModel(), extra = has(3) ? inverse(3) : TaylorModel();
+    const TaylorModel second = !has(2) ? TaylorModel() : square_of_first_ ? first * first : inverse(2);
+    const Jet2& w = form[3];
     Jet r;
     for (int axis = 0; axis < 3; ++axis) {
         const auto part = [&](std::size_t k) -> const Jet2& { return form[4 * k + std::size_t(axis)]; };
-        const Jet2 f0 = has(0) ? part(0) / form[3] : part(0);
+        Jet2 f0 = part(0);
+        if (has(0)) {
+            auto& f = f0.c;
+            f[0] = f[0] * along, f[1] = (f[1] - f[0] * w.c[1]) * along, f[3] = (f[3] - f[1] * w.c[1] - f[0] * w.c[3]) * along;
+        }
         TaylorModel f1 = part(1).c[0], slope = part(1).c[1], f2 = part(2).c[0];
         if (has(1)) f1 = f1 * first, slope = (slope - f1 * form[7].c[1]) * first;
         if (has(2)) f2 = f2 * second;
