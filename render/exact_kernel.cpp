@@ -10,6 +10,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRegular = 0.9;     // of |I - Y J|, which must be below 1: far enough from it for rounding not to matter
 constexpr double kEdgeOn = 1e-9;     // det / (|a| |b|) below which rounding would count
+constexpr double kBetweenLeaves = 1e-3;  // of what counts as meeting a border: between leaves only rounding must not lose a root
 constexpr double kRounding = 1e-14;  // relative: far above that of a few operations in double
 
 #define ISOPARM_LOOPS "exact_loops.inc"

@@ -33,6 +33,7 @@ struct LeafMap {
     double bend = 0;                            // infinite where derivatives have no bound
     double turn_u = 0, turn_v = 0;              // at least |S_u hu - a|, |S_v hv - b| anywhere, infinite likewise
     bool slanted = false;                       // u + v = 1 runs through it
+    bool outer[4] = {true, true, true, true};   // do its sides x = -1, 1 and y = -1, 1 lie on borders of the patch, or between its cells?
     double uu = 0, uv = 0, vv = 0;              // at least |S_uu| hu^2, |S_uv| hu hv, |S_vv| hv^2 anywhere, infinite likewise
     Point second[3];                            // those three, about, in the middle: where Newton's method begins
 };

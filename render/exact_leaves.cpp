@@ -54,6 +54,9 @@ void ExactPatch::set(Leaf& leaf, const Box& given, std::uint32_t cell) const {
         leaf.box.v.hi = std::min(given.v.hi, 1 - given.u.lo);
         leaf.slanted = leaf.box.u.hi + leaf.box.v.hi > 1;
     }
+    const auto outer = [](const std::vector<double>& lines, double x) { return std::find(lines.begin(), lines.end(), x) != lines.end(); };
+    leaf.outer[0] = outer(lines_u_, leaf.box.u.lo), leaf.outer[1] = leaf.box.u.hi != given.u.hi || outer(lines_u_, leaf.box.u.hi);
+    leaf.outer[2] = outer(lines_v_, leaf.box.v.lo), leaf.outer[3] = leaf.box.v.hi != given.v.hi || outer(lines_v_, leaf.box.v.hi);
     const Enclosure e = patch_.enclose(leaf.box);
     leaf.u = e.u, leaf.v = e.v;
     leaf.hu = rad(leaf.box.u), leaf.hv = rad(leaf.box.v);
@@ -130,11 +133,10 @@ void ExactPatch::add_leaves(const Box& box, std::uint32_t cell, int depth) {
 }
 
 ExactPatch::ExactPatch(const Patch& patch, double size)
-    : patch_(patch), own_cells_(patch.batch() ? PolynomialCells() : cells_of(patch)), cells_(patch_.batch() ? patch_.batch() : own_cells_.exist() ? &own_cells_ : nullptr), kernel_(exact_kernel(chosen_isa())), size_(size), slack_(slack(size)) {
-    const auto us = patch.lines_u(), vs = patch.lines_v();
+    : patch_(patch), own_cells_(patch.batch() ? PolynomialCells() : cells_of(patch)), cells_(patch_.batch() ? patch_.batch() : own_cells_.exist() ? &own_cells_ : nullptr), kernel_(exact_kernel(chosen_isa())), lines_u_(patch.lines_u()), lines_v_(patch.lines_v()), size_(size), slack_(slack(size)) {
     std::uint32_t cell = 0;
-    for (std::size_t i = 0; i + 1 < us.size(); ++i)
-        for (std::size_t j = 0; j + 1 < vs.size(); ++j) add_leaves({{us[i], us[i + 1]}, {vs[j], vs[j + 1]}}, cell++, kDepth);
+    for (std::size_t i = 0; i + 1 < lines_u_.size(); ++i)
+        for (std::size_t j = 0; j + 1 < lines_v_.size(); ++j) add_leaves({{lines_u_[i], lines_u_[i + 1]}, {lines_v_[j], lines_v_[j + 1]}}, cell++, kDepth);
 }
 
 }  // namespace isoparm

@@ -78,6 +78,8 @@ double ExactPatch::proved_error(const Leaf& leaf, const RayPacket& rays, const A
         const double within = std::max(mx / aim.wx[lane], my / aim.wy[lane]) * aim.growth[lane] * (1 + 1e-9);
         return within * (aim.wx[lane] * (leaf.size_a + leaf.turn_u) + aim.wy[lane] * (leaf.size_b + leaf.turn_v));
     };
+    // A root a little beyond the leaf is one of what continues S there.
+    const double outside = std::fabs(p.x[lane] - p.cx[lane]) * leaf.size_a + std::fabs(p.y[lane] - p.cy[lane]) * leaf.size_b;
     const RayPlanes ray = rays.at(lane);
     const double rounding = 1e-15 * (std::fabs(p.distance[lane]) + leaf.size_s + leaf.size_a + leaf.size_b + leaf.bend + length(ray.origin));
     double beyond = p.beyond[lane];
@@ -88,13 +90,13 @@ double ExactPatch::proved_error(const Leaf& leaf, const RayPacket& rays, const A
     }
     if (cells_) {
         const double error = distance_to_root(p.step_x[lane], p.step_y[lane], 1.7320509 * cells_->error().position + beyond + rounding);
-        if (error < kSharp * size_) return error;
+        if (error < kSharp * size_) return error + outside;
     }
     const Vec3<Interval> s = patch_.enclose_point(p.u[lane], p.v[lane]);
     const Point to = middle(s) - ray.origin + (p.x[lane] - p.cx[lane]) * leaf.a + (p.y[lane] - p.cy[lane]) * leaf.b;
     const double f1 = dot(ray.n1, to), f2 = dot(ray.n2, to);
     const double error = distance_to_root(aim.y11[lane] * f1 + aim.y12[lane] * f2, aim.y21[lane] * f1 + aim.y22[lane] * f2, radius(s) + rounding);
-    return error < 1e-6 * size_ ? error : kInfinity;
+    return error < 1e-6 * size_ ? error + outside : kInfinity;
 }
 
 /// Finds the roots of rays that have one at most in the leaf; those that can have more.

@@ -90,6 +90,7 @@ private:
     const PolynomialCells own_cells_;  // where the patch has none of its own
     const PolynomialCells* cells_;     // of the patch, or nullptr
     const ExactKernel& kernel_;
+    const std::vector<double> lines_u_, lines_v_;  // between cells, ends included
     double size_, slack_;
     std::deque<Leaf> leaves_;
     mutable std::atomic<std::size_t> kept_{0};  // halves
