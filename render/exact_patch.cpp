@@ -10,7 +10,7 @@ namespace isoparm {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kPlaces = 200;           // boxes that a ray may look at in one leaf
+constexpr int kPlaces = 1000;          // boxes that a ray may look at in one leaf
 constexpr double kPoint = 1e-9;        // boxes of this size, in sizes of the scene, are not halved again
 constexpr double kSharp = 5e-12;       // proved errors, in sizes of the scene, that need not be sharper
 constexpr int kSteps = 24;
