@@ -10,7 +10,7 @@ namespace isoparm {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kPlaces = 1000;          // boxes that a ray may look at in one leaf
+constexpr int kPlaces = 1000, kSingularPlaces = 200;  // boxes that a ray may look at in one leaf; where derivatives vanish in it, more find nothing more
 constexpr double kPoint = 1e-9;        // boxes of this size, in sizes of the scene, are not halved again
 constexpr double kSharp = 5e-12;       // proved errors, in sizes of the scene, that need not be sharper
 constexpr int kSteps = 24;
@@ -118,6 +118,7 @@ ExactPatch::Lanes ExactPatch::visit(const Leaf& leaf, const RayPacket& rays, con
 void ExactPatch::search(const Leaf& leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const {
     std::vector<std::pair<const Leaf*, Lanes>> open{{&leaf, active}};
     std::vector<std::unique_ptr<const Leaf>> kept;
+    const int most = leaf.turn_u < leaf.size_a && leaf.turn_v < leaf.size_b ? kPlaces : kSingularPlaces;
     int places[packet] = {};
     while (!open.empty()) {
         const auto [at, lanes] = open.back();
@@ -127,7 +128,7 @@ void ExactPatch::search(const Leaf& leaf, const RayPacket& rays, const double* f
         Lanes more = 0;
         for (int i = 0; i < n; ++i) {
             if (!(lanes >> i & 1)) continue;
-            if (point || places[i] > kPlaces) settle(*at, rays.at(i), farthest[i], found[i]);
+            if (point || places[i] > most) settle(*at, rays.at(i), farthest[i], found[i]);
             else more |= Lanes(1) << i;
         }
         for (int k = 0; k < 2 && more; ++k) {
