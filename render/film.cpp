@@ -52,9 +52,10 @@ bool Spread::read(std::istream& in) {
     return finite(first_) && finite(sum_) && finite(squares_);
 }
 
-Film::Film(const Area& area, int samples, double noise, bool statistics)
+Film::Film(const Area& area, int samples, double noise, Keeps keeps)
     : area_(noise > 0 ? whole_blocks(area) : area), samples_(samples), round_(std::min(samples, kFirstRound)), target_(noise), pixels_(area_.pixels()) {
-    if (noise > 0 || statistics) spreads_.resize(pixels_.size());
+    if (noise > 0 || keeps.spreads) spreads_.resize(pixels_.size());
+    if (keeps.brightest) brightest_.resize(pixels_.size());
     if (noise > 0) ended_.resize(pixels_.size() / (block * block));
 }
 
@@ -119,6 +120,7 @@ void Film::write(std::ostream& out) const {
     put(out, round_), put(out, done_), put(out, rays.rays), put(out, rays.undecided);
     for (const PixelSum& p : pixels_) put(out, p.color), put(out, p.alpha), put(out, p.used), put(out, p.seen);
     for (const Spread& s : spreads_) s.write(out);
+    for (const Color& c : brightest_) put(out, c);
     out.write(reinterpret_cast<const char*>(ended_.data()), static_cast<std::streamsize>(ended_.size()));
 }
 
@@ -132,6 +134,7 @@ bool Film::read(std::istream& in) {
         good = good && finite(p.color) && std::isfinite(p.alpha);
     }
     for (Spread& s : spreads_) good = s.read(in) && good;
+    for (Color& c : brightest_) get(in, c), good = good && finite(c);
     in.read(reinterpret_cast<char*>(ended_.data()), static_cast<std::streamsize>(ended_.size()));
     return good && in && sound();
 }

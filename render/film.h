@@ -48,20 +48,36 @@ struct PixelSum {
     int seen = 0;  // that were traced, at least as many
 };
 
+/// What a film keeps of one pixel.
+struct FilmPixel {
+    PixelSum& sum;
+    Spread* spread;    // nullptr without spreads
+    Color* brightest;  // of the samples in the sums, the first of several; nullptr where it is not kept
+};
+
 class Film {
 public:
     static constexpr int block = 8;  // pixels a side
 
-    /// `noise`: the target, 0 for none; the area then grows to whole blocks. `statistics`: spreads are kept, as with a target.
-    Film(const Area& area, int samples, double noise, bool statistics);
+    /// What is kept of a pixel besides its sums.
+    struct Keeps {
+        bool spreads = false;    // as with a target for the noise
+        bool brightest = false;  // samples
+    };
+    /// `noise`: the target, 0 for none; the area then grows to whole blocks.
+    Film(const Area& area, int samples, double noise, Keeps keeps);
 
     const Area& area() const { return area_; }
     int samples() const { return samples_; }
     PixelSum& at(int x, int y) { return pixels_[index(x, y)]; }
     const PixelSum& at(int x, int y) const { return pixels_[index(x, y)]; }
-    /// nullptr without statistics.
-    Spread* spread(int x, int y) { return spreads_.empty() ? nullptr : &spreads_[index(x, y)]; }
+    FilmPixel pixel(int x, int y) {
+        const std::size_t i = index(x, y);
+        return {pixels_[i], spreads_.empty() ? nullptr : &spreads_[i], brightest_.empty() ? nullptr : &brightest_[i]};
+    }
+    /// nullptr where they are not kept.
     const Spread* spread(int x, int y) const { return spreads_.empty() ? nullptr : &spreads_[index(x, y)]; }
+    const Color* brightest(int x, int y) const { return brightest_.empty() ? nullptr : &brightest_[index(x, y)]; }
 
     /// The round that is to be made: all pixels that go_on() get so many samples. samples() in the last one.
     int round() const { return round_; }
@@ -75,7 +91,7 @@ public:
     /// Samples traced, and how many there will be, as far as that can be told.
     double traced() const;
     double expected() const;
-    /// Root mean square over the pixels and colours of `seen`, of the standard error of the mean as it is shown: in sRGB, white is 1. 0 without statistics.
+    /// Root mean square over the pixels and colours of `seen`, of the standard error of the mean as it is shown: in sRGB, white is 1. 0 without spreads.
     double noise(const Area& seen) const;
     /// The part of the pixels that ended without reaching the target.
     double missed() const;
@@ -105,6 +121,7 @@ private:
     bool done_ = false;
     std::vector<PixelSum> pixels_;
     std::vector<Spread> spreads_;
+    std::vector<Color> brightest_;
     std::vector<std::uint8_t> ended_;  // by block: bit 0 and 1 for its sides; empty without a target
 };
 

@@ -45,6 +45,7 @@ struct Light {
 struct LightingSettings {
     int bounces = 8;        // after the first surface; 0: direct light only
     bool caustics = false;  // what lights of some place throw by mirrors and through glass onto other surfaces
+    enum class Fireflies { keep, spread } fireflies = Fireflies::keep;  // single bright pixels (fireflies.h)
     std::vector<Light> lights;
 };
 

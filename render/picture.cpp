@@ -2,19 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 
-#include "camera.h"
 #include "checkpoint.h"
-#include "drawn.h"
 #include "error.h"
 #include "insets.h"
 #include "layout.h"
-#include "overlay.h"
-#include "paint.h"
-#include "path_lighting.h"
-#include "resolve.h"
-#include "tracer.h"
+#include "picture_pieces.h"
+#include "view_rendering.h"
 
 namespace isoparm {
 namespace {
@@ -35,139 +29,8 @@ Area checked_area(const RenderOptions& options, int width, int height) {
     return a;
 }
 
-double in_scene_units(const Tolerance& t, const Camera& camera, const Bounds& box) {
-    const double size =
-        box.diagonal() > 0 ? box.diagonal() : 1;  // a single ball: nothing to tessellate, but tubes to round
-    const double absolute = t.unit == Tolerance::Unit::absolute   ? t.value
-                            : t.unit == Tolerance::Unit::relative ? t.value * size
-                                                                  : t.value * finest_pixel(camera, box);
-    if (!(absolute > 0) || !std::isfinite(absolute))
-        throw_input("the tolerance comes to " + to_text(absolute) + " scene units, expected more than 0");
-    return absolute;
-}
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-std::unique_ptr<const Lighting> lighting_of(const Scene& scene, const Camera& camera, const EnvironmentImages& environments, const std::optional<Ground>& ground) {
-    if (scene.lighting) return std::make_unique<PathLighting>(*scene.lighting, camera, environments, ground);
-    return std::make_unique<FigureLighting>(camera, ground);
-}
-
-/// With its height: under everything that is drawn, when the scene does not say.
-std::optional<Ground> ground_of(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced) {
-    std::optional<Ground> ground = scene.ground;
-    if (!ground || ground->height) return ground;
-    double low = std::numeric_limits<double>::infinity();
-    const auto add = [&](const Point& p, double radius) { low = std::min(low, dot(p, ground->up) - radius); };
-    for (const Mesh& mesh : traced.meshes)
-        for (const Point& p : mesh.positions) add(p, 0);
-    const double size = bounding_box(scene).diagonal();
-    for (const SceneObject& o : objects) {
-        const bool tubes = o.kind == SceneObject::Kind::surface && o.boundary && !(o.line.width > 0);
-        const double radius = tubes ? radius_of(o, size) : 0;  // of other things it is counted already
-        if (o.kind != SceneObject::Kind::axes)
-            for (const Point& p : drawn_points(scene, {o})) add(p, radius);
-    }
-    if (!std::isfinite(low)) return {};
-    ground->height = low;
-    return ground;
-}
-
-/// All pixels as where nothing is.
-Layers blank_layers(int width, int height, const std::vector<Aov>& aovs) {
-    Layers layers{channels_of(aovs), {}};
-    const auto pixel = empty_pixel(aovs);
-    const std::size_t pixels = pixel.empty() ? 0 : static_cast<std::size_t>(width) * height;
-    layers.values.reserve(pixels * pixel.size());
-    for (std::size_t i = 0; i < pixels; ++i) layers.values.insert(layers.values.end(), pixel.begin(), pixel.end());
-    return layers;
-}
-
-Image blank(int width, int height, const std::optional<Color>& background) {
-    Image image{width, height, {}};
-    image.pixels.resize(4 * static_cast<std::size_t>(width) * height);
-    if (background)
-        for (std::size_t i = 0; i < image.pixels.size(); ++i)
-            image.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>((*background)[static_cast<int>(i % 4)]);
-    return image;
-}
-
-struct Quality {
-    int samples;
-    double noise;
-    bool statistics;  // of the samples of each pixel
-    Tolerance tolerance;
-    double pixel;  // pixels of this picture to one of the scene's
-    bool exact, vectors;
-    double most_halved;
-    int grid;
-};
-
-/// Puts a drawing over a picture; (x,y) is where its pixels begin there.
-void put_over(Drawing drawing, int x, int y, int width, int height, bool vectors, Picture& picture) {
-    if (vectors)
-        picture.drawn.push_back({std::move(drawing), x, y, width, height});
-    else
-        paint(drawing, -x, -y, picture.image);
-}
-
-/// Does anything mirror or bend what is seen? Then parameter lines are traced, so that they are seen in it too.
-bool mirrors(const Scene& scene, const std::vector<SceneObject>& objects) {
-    return scene.lighting && std::any_of(objects.begin(), objects.end(), [](const SceneObject& o) { return o.material.kind == Material::Kind::metal || o.material.kind == Material::Kind::glass; });
-}
-
-/// The part `area` of a view, in the view's own pixels, ready to be traced.
-struct ViewRendering {
-    const Scene& scene;
-    const View& view;
-    Area area;
-    Quality how;
-    Camera camera = camera_of(view);
-    double tolerance = in_scene_units(how.tolerance, camera, bounding_box(scene));
-    bool lines = how.vectors && !mirrors(scene, view.objects);  // parameter lines are vectors
-    TracedScene traced;
-    std::optional<Ground> ground = ground_of(scene, view.objects, traced);
-    std::unique_ptr<const Lighting> lighting;
-    Film film{area, how.samples, how.noise, how.statistics};
-    Tracer tracer{traced, camera, *lighting, how.samples, scene.image.background, ground};
-
-    ViewRendering(const Scene& s, const View& v, const Area& a, const Quality& q, const EnvironmentImages& environments, const std::function<void(double)>& progress)
-        : scene(s), view(v), area(a), how(q), traced(build_traced_scene(scene, view.objects, tolerance, progress, how.exact, how.grid)), lighting(lighting_of(scene, camera, environments, ground)) {
-        for (Thing& thing : traced.things) thing.isolines.width = lines ? 0 : thing.isolines.width * how.pixel;
-    }
-
-    /// As far as it is traced.
-    Picture picture(const std::vector<Aov>& aovs) const {
-        Picture p;
-        p.tolerance = tolerance;
-        p.certified_error = traced.certified_error;
-        p.triangles = traced.triangles;
-        for (const ExactPatch& patch : traced.patches) p.leaves += patch.leaves();
-        p.image = blank(area.width(), area.height(), {});
-        p.layers = blank_layers(area.width(), area.height(), aovs);
-        resolve(tracer, film, AovReader(scene, traced, camera, aovs), area, p.image, p.layers);
-        p.rays = {film.rays.rays, film.rays.undecided};
-        put_over(overlay(scene, view.objects, traced, camera, how.pixel, view.letter, lines, {view.inset.has_value(), view.covered}), -area.x0, -area.y0, view.width, view.height, how.vectors, p);
-        return p;
-    }
-};
-
-Area common(const Area& a, const Area& b) {
-    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-}
-
-void paste(const Image& part, int x0, int y0, Image& whole) {
-    for (int y = 0; y < part.height; ++y)
-        std::copy_n(part.at(0, y), 4 * static_cast<std::size_t>(part.width), whole.at(x0, y0 + y));
-}
-void paste(const Picture& part, int x0, int y0, Picture& whole) {
-    paste(part.image, x0, y0, whole.image);
-    const std::size_t channels = part.layers.channels.size(), row = channels * part.image.width;
-    for (int y = 0; y < part.image.height; ++y)
-        std::copy_n(part.layers.values.data() + y * row, row,
-                    whole.layers.values.data() + channels * (static_cast<std::size_t>(y0 + y) * whole.image.width + x0));
 }
 
 /// Rays against folds and places without area halve boxes again and again: minutes for what others do in a second. Throws Error(budget).
@@ -206,7 +69,7 @@ public:
             tell(before, 0);
             if (const bool whole = trace([&] { return stopped() || checkpoint.due() || (options_.preview && preview.due()); }, before); !whole) continue;
             for (auto& part : parts_)
-                if (!part.rendering->film.done()) part.rendering->film.next_round();
+                if (!part.rendering->film().done()) part.rendering->film().next_round();
         }
         if (stopped() && !done()) checkpoint.save();
         Picture all = picture();
@@ -229,16 +92,16 @@ private:
     }
     std::vector<Film*> films() const {
         std::vector<Film*> all;
-        for (const Part& p : parts_) all.push_back(&p.rendering->film);
+        for (const Part& p : parts_) all.push_back(&p.rendering->film());
         return all;
     }
     bool stopped() const { return options_.stop && options_.stop(); }
     bool done() const {
-        return std::all_of(parts_.begin(), parts_.end(), [](const Part& p) { return p.rendering->film.done(); });
+        return std::all_of(parts_.begin(), parts_.end(), [](const Part& p) { return p.rendering->film().done(); });
     }
     double traced() const {
         double sum = 0;
-        for (const Part& p : parts_) sum += p.rendering->film.traced();
+        for (const Part& p : parts_) sum += p.rendering->film().traced();
         return sum;
     }
     /// Progress never runs backwards, whatever its parts report.
@@ -250,7 +113,7 @@ private:
         if (!options_.progress) return;
         if (more == 0) {
             now_ = traced(), expected_ = 0;
-            for (const Part& p : parts_) expected_ += p.rendering->film.expected();
+            for (const Part& p : parts_) expected_ += p.rendering->film().expected();
             if (options_.tell_noise && now_ > 0) options_.tell_noise(noise());
         }
         report(kMeshShare + (1 - kMeshShare) * (now_ + more - before) / std::max(1.0, expected_ - before));
@@ -258,7 +121,7 @@ private:
     double noise() const {
         double sum = 0, pixels = 0;
         for (const Part& p : parts_) {
-            const double one = p.rendering->film.noise(p.rendering->area), n = static_cast<double>(p.rendering->area.pixels());
+            const double one = p.rendering->film().noise(p.rendering->area()), n = static_cast<double>(p.rendering->area().pixels());
             sum += n * one * one, pixels += n;
         }
         return pixels > 0 ? std::sqrt(sum / pixels) : 0;
@@ -267,16 +130,16 @@ private:
     bool trace(const std::function<bool()>& pause, double before) {
         double others = 0;
         for (const Part& p : parts_) {
-            if (p.rendering->film.done()) continue;
+            if (p.rendering->film().done()) continue;
             double here = 0;
             const auto progress = [&](double n) {
-                check_work(p.rendering->traced, how_.most_halved, (now_ + others + n) / std::max(1.0, expected_));
+                check_work(p.rendering->traced(), how_.most_halved, (now_ + others + n) / std::max(1.0, expected_));
                 tell(before, others + (here = n));
             };
-            Film& film = p.rendering->film;
-            const auto first = p.rendering->traced.embree->count();
-            const bool whole = trace_round(p.rendering->tracer, film, options_.tile, pause, progress);
-            const auto last = p.rendering->traced.embree->count();
+            Film& film = p.rendering->film();
+            const auto first = p.rendering->traced().embree->count();
+            const bool whole = trace_round(p.rendering->tracer(), film, options_.tile, pause, progress);
+            const auto last = p.rendering->traced().embree->count();
             film.rays.rays += last.rays - first.rays, film.rays.undecided += last.undecided - first.undecided;
             if (!whole) return false;
             others += here;
@@ -296,7 +159,7 @@ private:
             paste(one, part.seen.x0 - area_.x0, part.seen.y0 - area_.y0, all);
             for (DrawnPart d : one.drawn) {
                 d.x += part.seen.x0 - area_.x0, d.y += part.seen.y0 - area_.y0;
-                d.holes = part.rendering->view.covered;
+                d.holes = part.rendering->view().covered;
                 all.drawn.push_back(std::move(d));
             }
             all.tolerance = std::max(all.tolerance, one.tolerance);
@@ -305,9 +168,9 @@ private:
             all.leaves += one.leaves;
             all.rays.rays += one.rays.rays;
             all.rays.undecided += one.rays.undecided;
-            const Film& film = part.rendering->film;
+            const Film& film = part.rendering->film();
             missed += film.missed() * static_cast<double>(part.seen.pixels()), pixels += static_cast<double>(part.seen.pixels());
-            count_samples(film, part.rendering->area, all.samples);
+            count_samples(film, part.rendering->area(), all.samples);
         }
         all.samples.most_asked = how_.samples;
         all.samples.target = how_.noise;

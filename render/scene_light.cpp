@@ -141,8 +141,9 @@ LightingSettings read_lighting(const Json& j, const SceneValues& values) {
         return s;
     }
     if (!j.is(Kind::object)) j.expected("\"studio\", or {\"bounces\": n, \"lights\": [...]}");
-    j.allow_keys({"bounces", "caustics", "lights"});
+    j.allow_keys({"bounces", "caustics", "fireflies", "lights"});
     if (const auto caustics = j.find("caustics")) s.caustics = values.boolean(*caustics);
+    if (const auto fireflies = j.find("fireflies")) s.fireflies = LightingSettings::Fireflies(values.word(*fireflies, {"keep", "spread"}));
     if (const auto bounces = j.find("bounces")) s.bounces = values.integer(*bounces, 0, 64, "a number of bounces");
     if (const auto lights = j.find("lights")) {
         for (const Json& l : values.list(*lights, 1, 1000, "lights")) s.lights.push_back(read_light(l, values));

@@ -10,9 +10,10 @@
 
 namespace isoparm {
 
-void Tracer::sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* spread, const std::function<bool()>& stop) const {
+void Tracer::sample(int x, int y, int to, bool counts, const FilmPixel& film, const std::function<bool()>& stop) const {
     const bool empty = !may_meet(x, y);
-    if (empty && !spread && sum.seen < to) {  // sums stay as they are
+    PixelSum& sum = film.sum;
+    if (empty && !film.spread && sum.seen < to) {  // sums stay as they are
         if (counts) sum.used += to - sum.seen;
         sum.seen = to;
     }
@@ -28,7 +29,7 @@ void Tracer::sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* sp
             this->rays(pixel, of, n, rays);
             trace(rays, of, n, seen);
         }
-        add(seen, n, counts, sum, spread);
+        add(seen, n, counts, film);
     }
 }
 
@@ -66,12 +67,15 @@ void Tracer::sample_block(int x, int y, Rgba* seen) const {
     trace(rays, of, n, seen);
 }
 
-void Tracer::add(Rgba* seen, int n, bool counts, PixelSum& sum, Spread* spread) const {
+void Tracer::add(Rgba* seen, int n, bool counts, const FilmPixel& film) const {
+    const auto bright = [](const Color& c) { return c.x + c.y + c.z; };
+    PixelSum& sum = film.sum;
     for (int i = 0; i < n; ++i) {
         if (counts) sum.color += seen[i].color, sum.alpha += seen[i].alpha;
-        if (!spread) continue;
+        if (counts && film.brightest && bright(seen[i].color) > bright(*film.brightest)) *film.brightest = seen[i].color;
+        if (!film.spread) continue;
         seen[i].add_behind(background_.value_or(Color{1, 1, 1}), 1);
-        spread->add(seen[i].color);
+        film.spread->add(seen[i].color);
     }
     sum.seen += n;
     if (counts) sum.used += n;
@@ -210,11 +214,11 @@ private:
             for (int x = area_.x0; x < area_.x1; ++x) {
                 if (!open(x, y)) continue;
                 if (stopped_.load(std::memory_order_relaxed)) return;
-                PixelSum& pixel = film_.at(x, y);
-                const int before = pixel.seen;
-                tracer_.sample(x, y, film_.round(), film_.counts(x, y), pixel, film_.spread(x, y), stop_);
-                traced_ += pixel.seen - before;
-                if (pixel.seen < film_.round()) stopped_ = true;
+                const PixelSum& sum = film_.at(x, y);
+                const int before = sum.seen;
+                tracer_.sample(x, y, film_.round(), film_.counts(x, y), film_.pixel(x, y), stop_);
+                traced_ += sum.seen - before;
+                if (sum.seen < film_.round()) stopped_ = true;
             }
     }
     /// All samples of a pixel are in one round.
@@ -236,7 +240,7 @@ private:
                 }
                 Rgba seen[EmbreeScene::packet];
                 tracer_.sample_block(x, y, seen);
-                each([&](int k, int px, int py) { tracer_.add(seen + k * n, n, film_.counts(px, py), film_.at(px, py), film_.spread(px, py)), traced_ += n; });
+                each([&](int k, int px, int py) { tracer_.add(seen + k * n, n, film_.counts(px, py), film_.pixel(px, py)), traced_ += n; });
             }
     }
 

@@ -28,8 +28,8 @@ public:
         : scene_(scene), camera_(camera), lighting_(lighting), samples_(samples), background_(background), ground_(ground), coverage_(scene, camera), open_(ground || lighting.backdrop(camera.forward)) {}
 
     /// Traces samples of the pixel up to number `to`, in packets that begin at multiples of EmbreeScene::packet; between them it may end early when
-    /// `stop` says so. `counts`: they are added to the sums. `spread` may be nullptr.
-    void sample(int x, int y, int to, bool counts, PixelSum& sum, Spread* spread, const std::function<bool()>& stop) const;
+    /// `stop` says so. `counts`: they are added to the sums.
+    void sample(int x, int y, int to, bool counts, const FilmPixel& pixel, const std::function<bool()>& stop) const;
     /// Pixels of pictures of few samples share packets: blocks so wide and high, which begin at multiples of that, whatever part of the picture is rendered.
     struct Block {
         int width, height;
@@ -37,8 +37,8 @@ public:
     Block block() const;
     /// Traces all samples of the block at (x,y), into what is empty: those of its pixels, row by row.
     void sample_block(int x, int y, Rgba* seen) const;
-    /// Adds traced samples to a pixel's sums; `spread` may be nullptr.
-    void add(Rgba* seen, int n, bool counts, PixelSum& sum, Spread* spread) const;
+    /// Adds traced samples to what is kept of a pixel.
+    void add(Rgba* seen, int n, bool counts, const FilmPixel& pixel) const;
     /// Background and all, premultiplied; of a pixel that has samples.
     Rgba resolved(const PixelSum& sum) const;
     /// A single sample through the middle of some pixels, for pictures that are not there yet.

@@ -129,11 +129,11 @@ TEST(LongRender, CheckpointsOfOtherPicturesAndDamagedOnesAreRefused) {
 }
 
 TEST(LongRender, FilmsThatLieAreRefused) {
-    Film film({0, 0, 8, 8}, 64, 0.1, true);
+    Film film({0, 0, 8, 8}, 64, 0.1, {});
     const auto refused = [&] {
         std::stringstream bytes;
         film.write(bytes);
-        return !Film({0, 0, 8, 8}, 64, 0.1, true).read(bytes);
+        return !Film({0, 0, 8, 8}, 64, 0.1, {}).read(bytes);
     };
     EXPECT_FALSE(refused());
     const PixelSum none;
@@ -171,7 +171,7 @@ TEST(LongRender, NoiseTargetsKeepTheMean) {
     const double truth = 0.02 * 5 + 0.98 * 0.1;
     tests::Random random(11);
     const int size = 512;
-    Film film({0, 0, size, size}, 1024, 0.06, true);
+    Film film({0, 0, size, size}, 1024, 0.06, {});
     double own = 0;  // what stopping on one's own samples would give, for comparison: to show that the test can fail
     do {
         for (int y = 0; y < size; ++y)
@@ -181,7 +181,7 @@ TEST(LongRender, NoiseTargetsKeepTheMean) {
                 const bool counts = film.counts(x, y);
                 for (; p.seen < film.round(); ++p.seen) {
                     const double c = random.number() < 0.02 ? 5 : 0.1;
-                    film.spread(x, y)->add({c, c, c});
+                    film.pixel(x, y).spread->add({c, c, c});
                     if (counts) p.color += Color{c, c, c}, ++p.used;
                 }
             }

@@ -1,0 +1,55 @@
+#include "picture_pieces.h"
+
+#include <algorithm>
+
+#include "paint.h"
+
+namespace isoparm {
+
+Area common(const Area& a, const Area& b) {
+    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
+Layers blank_layers(int width, int height, const std::vector<Aov>& aovs) {
+    Layers layers{channels_of(aovs), {}};
+    const auto pixel = empty_pixel(aovs);
+    const std::size_t pixels = pixel.empty() ? 0 : static_cast<std::size_t>(width) * height;
+    layers.values.reserve(pixels * pixel.size());
+    for (std::size_t i = 0; i < pixels; ++i) layers.values.insert(layers.values.end(), pixel.begin(), pixel.end());
+    return layers;
+}
+
+Image blank(int width, int height, const std::optional<Color>& background) {
+    Image image{width, height, {}};
+    image.pixels.resize(4 * static_cast<std::size_t>(width) * height);
+    if (background)
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            image.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>((*background)[static_cast<int>(i % 4)]);
+    return image;
+}
+
+namespace {
+
+void paste(const Image& part, int x0, int y0, Image& whole) {
+    for (int y = 0; y < part.height; ++y)
+        std::copy_n(part.at(0, y), 4 * static_cast<std::size_t>(part.width), whole.at(x0, y0 + y));
+}
+
+}  // namespace
+
+void paste(const Picture& part, int x0, int y0, Picture& whole) {
+    paste(part.image, x0, y0, whole.image);
+    const std::size_t channels = part.layers.channels.size(), row = channels * part.image.width;
+    for (int y = 0; y < part.image.height; ++y)
+        std::copy_n(part.layers.values.data() + y * row, row,
+                    whole.layers.values.data() + channels * (static_cast<std::size_t>(y0 + y) * whole.image.width + x0));
+}
+
+void put_over(Drawing drawing, int x, int y, int width, int height, bool vectors, Picture& picture) {
+    if (vectors)
+        picture.drawn.push_back({std::move(drawing), x, y, width, height});
+    else
+        paint(drawing, -x, -y, picture.image);
+}
+
+}  // namespace isoparm
