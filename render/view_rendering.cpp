@@ -88,7 +88,9 @@ Picture ViewRendering::picture(const std::vector<Aov>& aovs) const {
     for (const ExactPatch& patch : traced_.patches) p.leaves += patch.leaves();
     p.image = blank(area_.width(), area_.height(), {});
     p.layers = blank_layers(area_.width(), area_.height(), aovs);
-    resolve(tracer_, spread_ ? without_fireflies(film_) : film_, AovReader(scene_, traced_, camera_, aovs), area_, p.image, p.layers);
+    const auto resolved = [&](const Film& film) { resolve(tracer_, film, AovReader(scene_, traced_, camera_, aovs), area_, p.image, p.layers); };
+    if (spread_) resolved(without_fireflies(film_));
+    else resolved(film_);
     p.rays = {film_.rays.rays, film_.rays.undecided};
     put_over(overlay(scene_, view_.objects, traced_, camera_, how_.pixel, view_.letter, lines_, {view_.inset.has_value(), view_.covered}), -area_.x0, -area_.y0, view_.width, view_.height, how_.vectors, p);
     return p;
