@@ -163,6 +163,15 @@ std::string LimitSurface::reason(int face) const {
     return reason.empty() ? "OpenSubdiv uses several patches" : reason;
 }
 
+bool LimitSurface::manifold() const {
+    const auto& level = impl_->level();
+    for (int v = 0; v < level.GetNumVertices(); ++v)
+        if (level.IsVertexNonManifold(v)) return false;
+    for (int e = 0; e < level.GetNumEdges(); ++e)
+        if (level.IsEdgeNonManifold(e)) return false;
+    return true;
+}
+
 std::vector<LimitEdge> LimitSurface::shared_edges() const {
     const auto& level = impl_->level();
     std::vector<LimitEdge> shared;

@@ -49,6 +49,8 @@ public:
     LimitFace kind(int face) const;
     /// Why a face is not regular: "extraordinary vertex of valence 5", "face of 6 vertices" ...
     std::string reason(int face) const;
+    /// Does every edge have two faces at most, and every vertex a single fan of them?
+    bool manifold() const;
     /// Edges that exactly two different faces share, in the order of their first face.
     std::vector<LimitEdge> shared_edges() const;
 

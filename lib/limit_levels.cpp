@@ -48,13 +48,15 @@ LevelMeasures measure(const LimitCell& cell, const Patch& patch, int samples) {
     return m;
 }
 
-/// Across the edge where sector a ends and sector b begins.
+/// Across the edge where sector a ends and sector b begins. Its ends are left out: where fewer than the regular number of faces meet, derivatives of the limit vanish, those of
+/// surfaces on its curves come near to that, and their directions say nothing.
 LevelMeasures measure_edge(const Patch& a, const Patch& b, int samples) {
     LevelMeasures m;
     const LimitFunction left = limit_function(a), right = limit_function(b);
     const double lean = a.domain() == Domain::quad ? 0 : 0.5;  // across a triangle: along its median
-    for (int i = 0; i < samples; ++i) {
-        const double t = double(i) / (samples - 1);
+    const int steps = std::max(2, samples - 1);
+    for (int i = 1; i < steps; ++i) {
+        const double t = double(i) / steps;
         const LimitFrame x = left(0, t), y = right(t, 0);
         const Point n = cross(x.du, x.dv), k = cross(y.du, y.dv);
         if (!(length(n) > 0) || !(length(k) > 0)) continue;
@@ -200,7 +202,7 @@ LimitLevels measure_levels(const LimitSurface& limit, const LevelOptions& option
     result.compared.assign(limit.faces(), 0), result.subcells.compared = result.compared;
     const double size = reach(limit.cage());
     if (limit.scheme() == Scheme::loop) measure_loop(limit, std::min(options.levels, 6), options.samples, kNoise * size, result);
-    if (limit.faces() == regular(limit)) return result;
+    if (limit.faces() == regular(limit) && limit.manifold()) return result;
     try {
         result.faces = std::make_shared<const LimitFaces>(limit.cage(), limit.scheme());
         result.masks_gap = result.faces->masks_gap;

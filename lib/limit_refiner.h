@@ -1,4 +1,4 @@
-// limit_refiner.h -- a cage as OpenSubdiv's topology; internal to limit.cpp and limit_samples.cpp, which alone include OpenSubdiv.
+// limit_refiner.h -- a cage as OpenSubdiv's topology; internal to limit.cpp and limit_samples.cpp: these, and this file, alone include OpenSubdiv.
 #pragma once
 #include <opensubdiv/far/topologyRefiner.h>
 

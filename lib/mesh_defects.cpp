@@ -154,8 +154,8 @@ std::size_t count_holes(const TriangleMesh& mesh, const MeshDefects& defects, co
     std::vector<char> hole(defects.boundary_loops, 0);
     for (std::size_t e = 0; e < defects.open_edges.size(); ++e) {
         const Point &a = mesh.points[defects.open_edges[e][0]], &b = mesh.points[defects.open_edges[e][1]];
-        for (const Point& p : {a, b, 0.5 * (a + b)})
-            if (!tree.any_within(p, distance)) hole[defects.loop[e]] = 1;
+        const Point middle = 0.5 * (a + b);  // of a chord, beside its arc
+        if (!tree.any_within(a, distance) || !tree.any_within(b, distance) || !tree.any_within(middle, std::max(distance, 0.25 * isoparm::distance(a, b)))) hole[defects.loop[e]] = 1;
     }
     return static_cast<std::size_t>(std::count(hole.begin(), hole.end(), 1));
 }

@@ -192,13 +192,14 @@ private:
 
     void compare_normals(const TriangleTree& finer) {
         const std::size_t count = mesh_.triangles.size();
-        std::vector<double> angle(count, -1);
+        std::vector<double> angle(count, -1), away(count);
         std::vector<char> same(count, 0);
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& range) {
             for (std::size_t t = range.begin(); t < range.end(); ++t) {
                 const auto [a, b, c] = mesh_.corners(t);
                 const Point n = cross(b - a, c - a), middle = (a + b + c) / 3.0;
                 const auto near = finer.nearest(middle);
+                away[t] = near.distance;
                 const FinerMesh::Place place = finer_->place_in(near.triangle, near.point);
                 const auto normal = normal_at(place);
                 if (!(length(n) > 0) || !normal) continue;
@@ -216,12 +217,15 @@ private:
         d.mean /= double(std::max<std::size_t>(1, d.compared));
         d.against = std::min(along, d.compared - along);
         normals_ = d;
+        const auto tenth = away.begin() + static_cast<std::ptrdiff_t>(9 * (count - 1) / 10);
+        std::nth_element(away.begin(), tenth, away.end());
+        usual_ = *tenth;
     }
 
     Verification result() const {
         Verification r;
         r.surface_to_mesh = s_, r.mesh_to_surface = m_;
-        r.normals = normals_;
+        r.normals = normals_, r.usual = usual_;
         r.border = finer_->open_edges(), r.finer_triangles = finer_->mesh().triangles.size(), r.finer_error = finer_->error();
         for (DirectedDistance* d : {&r.surface_to_mesh, &r.mesh_to_surface}) d->lower = std::max(0.0, d->lower);
         if (!s_.narrowed || !m_.narrowed) r.stopped = spent_ ? "a triangle has too many of the others beside it" : !stopped_.empty() ? stopped_ : budget_text();
@@ -237,6 +241,7 @@ private:
     double exact_ = 0;
     std::unique_ptr<FinerMesh> finer_, coarser_;  // the last one, and the one before
     DirectedDistance s_, m_;            // surface to mesh, mesh to surface
+    double usual_ = 0;
     double s_seen_ = 0, m_seen_ = 0;    // the largest distances at sample points
     NormalDeviation normals_;
     std::string stopped_;

@@ -22,7 +22,7 @@ struct VerifyOptions {
 /// lower <= the largest distance of a point of one set from the other set <= upper, proved.
 struct DirectedDistance {
     double lower = 0, upper = 0;
-    Point at;                   // where `lower` was found: a point of the surface, or of the mesh
+    Point at;                   // where `lower` was found: a point of the mesh, or of the surface and then within the finer mesh's error of one that is so far
     std::size_t member = 0;     // surface to mesh: the patch, and parameters
     Vec2 uv;
     std::size_t triangle = 0;   // mesh to surface: the triangle
@@ -40,6 +40,7 @@ struct NormalDeviation {
 struct Verification {
     DirectedDistance surface_to_mesh, mesh_to_surface;
     NormalDeviation normals;
+    double usual = 0;                          // nine in ten of the mesh's triangles have their middle so near to the surface: seen, not proved
     std::vector<std::array<Point, 2>> border;  // of the surface: the open edges of the finer mesh, within its error of the surface's
     std::size_t finer_triangles = 0;           // what the surface was replaced by, and how far that is from it
     double finer_error = 0;

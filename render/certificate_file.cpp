@@ -1,5 +1,6 @@
 #include "certificate_file.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <ostream>
@@ -19,12 +20,16 @@ std::string list(const Vec2& p) {
     return text += to_text(p.x) + ", " + to_text(p.y) + "]";
 }
 
+}  // namespace
+
 bool slides(const CertifiedTriangle& t) {
     for (const auto& edge : t.slide)
         for (const Vec2& w : edge)
             if (w.x != 0 || w.y != 0) return true;
     return false;
 }
+
+namespace {
 
 void write_triangle(std::ostream& out, const CertifiedTriangle& t) {
     out << "{\"corners\": [" << t.corner[0] << ", " << t.corner[1] << ", " << t.corner[2] << "], \"bound\": " << to_text(t.bound) << ", \"method\": ";
@@ -108,8 +113,20 @@ public:
     }
     [[noreturn]] void fail(const std::string& expected) const {
         std::string found = "the end of the file";
-        if (at_ < text_.size()) found = quoted(text_.substr(at_, std::min<std::size_t>(16, text_.find_first_of("\n,", at_) - at_)));
+        if (at_ < text_.size()) found = quoted(text_.substr(at_, std::clamp<std::size_t>(text_.find_first_of("\n,]}", at_) - at_, 1, 16)));
         throw LocatedError(path_ + ":" + line_and_column(text_, at_) + ": found " + found + ", expected " + expected);
+    }
+    /// read() and what it returns, unless that is not as expected.
+    template <class Read, class Good> auto only(Read read, Good good, const std::string& expected) {
+        skip_space();
+        const std::size_t start = at_;
+        auto x = read();
+        if (!good(x)) at_ = start, fail(expected);
+        return x;
+    }
+
+    std::string word(const std::vector<std::string>& words) {
+        return only([&] { return string(); }, [&](const std::string& x) { return std::find(words.begin(), words.end(), x) != words.end(); }, quoted(words[0]) + " or " + quoted(words[1]));
     }
 
 private:
@@ -137,9 +154,7 @@ CertifiedTriangle read_triangle(Scanner& in) {
     in.expect(']'), in.expect(','), in.key("bound");
     t.bound = in.number();
     in.expect(','), in.key("method");
-    const std::string method = in.string();
-    if (method != "parametric" && method != "sliding") in.fail("the method \"parametric\" or \"sliding\" before this");
-    if (method == "sliding") {
+    if (in.word({"parametric", "sliding"}) == "sliding") {
         in.expect(','), in.key("slides"), in.expect('[');
         for (int k = 0; k < 6; ++k) {
             if (k) in.expect(',');
@@ -206,7 +221,7 @@ CertificateFile read_certificate(const std::string& text, const std::string& pat
     Scanner in(text, path);
     const auto next = [&](const char* key) { in.expect(','), in.key(key); };
     in.expect('{'), in.key("isoparm_certificate");
-    if (in.number() != kVersion) in.fail("version " + std::to_string(kVersion) + " of the format before this");
+    in.only([&] { return in.number(); }, [](double x) { return x == kVersion; }, "version " + std::to_string(kVersion) + " of the format");
     next("program"), in.string();
     next("scene"), file.scene = in.string();
     next("sha256"), file.sha256 = in.string();
@@ -218,7 +233,7 @@ CertificateFile read_certificate(const std::string& text, const std::string& pat
         in.expect(':');
         file.parameters[name] = in.number();
     });
-    next("measure"), file.measure = in.string();
+    next("measure"), file.measure = in.word({"geometric", "parametric"});
     next("tolerance"), c.tolerance = in.number();
     next("certified_error"), c.certified_error = in.number();
     next("vertices");

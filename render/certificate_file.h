@@ -14,9 +14,12 @@ struct CertificateFile {
     std::string scene, sha256;            // the scene file's name, without folders, and its digest
     std::optional<std::string> surface;   // --surface; otherwise all that the scene draws
     std::map<std::string, double> parameters;
-    std::string measure;                  // of the bounds that it was made from
+    std::string measure;                  // "geometric" or "parametric": of the bounds that it was made from; none of the latter slides
     Certificate certificate;
 };
+
+/// Is it proved by points that slide along the surface, instead of points at equal parameters?
+bool slides(const CertifiedTriangle& triangle);
 
 /// One vertex, corner or triangle a line; numbers read back as the same doubles.
 void write_certificate(std::ostream& out, const CertificateFile& file);

@@ -49,6 +49,23 @@ TEST(CertificateProgram, WhatIsNotProvedEndsWithCode2) {
     expect(certificate + t / "c.json" + " --against " + t / "scene.json", 2, "is not the scene");
 }
 
+TEST(CertificateProgram, ClaimsThatAreNotSoAreFound) {
+    const TemporaryFolder t;
+    const std::string against = " --against " + scene("coons"), certificate = "verify --certificate ";
+    ASSERT_EQ(run("tessellate " + scene("coons") + " --quiet --tolerance 1e-2 --certificate " + t / "g.json" + " -o " + t / "m.ply").code, 0);
+    const auto changed = [&](const std::string& from, const std::string& to) {
+        std::string other = read_all(t / "g.json");
+        other.replace(other.find(from), from.size(), to);
+        write_all(t / "other.json", other);
+        return certificate + t / "other.json" + against;
+    };
+    expect(changed("\"measure\": \"geometric\"", "\"measure\": \"banana\""), 65, R"(found "\"banana\"", expected "geometric" or "parametric")");
+    expect(changed("\"measure\": \"geometric\"", "\"measure\": \"parametric\""), 2, "which proves the geometric measure only");
+    expect(changed("\"name\": \"", "\"name\": \"no"), 2, "found the name \"no");
+    expect(changed("certificate\": 1", "certificate\": 2"), 65, R"(found "2", expected version 1)");
+    expect(changed("\"method\": \"", "\"method\": \"un"), 65, R"(found "\"un)");
+}
+
 TEST(CertificateProgram, SurfaceAndParametersAreTheCertificatesOwn) {
     const TemporaryFolder t;
     ASSERT_EQ(run("tessellate " + scene("teapot") + " --surface teapot/teapot#7 --quiet --tolerance 1e-2 --certificate " + t / "c.json" + " -o " + t / "m.ply").code, 0);

@@ -244,6 +244,17 @@ TEST(LimitLevels, HoldFarFromTheOriginAndForOneLine) {
     }
 }
 
+TEST(LimitLevels, WhereDerivativesVanishTheirDirectionsDoNotCount) {
+    // At vertices of three triangles the limit's derivatives vanish. The limit is an affine image of that of the regular tetrahedron, which is smooth.
+    Cage corner;
+    corner.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    corner.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    const LimitLevels r = levels_of(corner, Scheme::loop);
+    EXPECT_LT(*r.worst.g1_degrees, 5);
+    for (const LimitLevel& row : r.by_level)
+        if (row.level == 6) { EXPECT_LT(*row.measured.g1_degrees, row.method == "nielson_c1" ? 1e-3 : 2) << row.method; }
+}
+
 TEST(LimitLevels, AnswersWhereThereIsNothingToMeasure) {
     const LimitLevels torus = levels_of(read_cage_obj(read_text_file(std::string(ISOPARM_SOURCE_DIR) + "/tests/data/cages/torus.obj"), "torus"));
     EXPECT_TRUE(torus.by_level.empty() && torus.refused.empty());
@@ -253,6 +264,10 @@ TEST(LimitLevels, AnswersWhereThereIsNothingToMeasure) {
     const LimitLevels r = levels_of(bowtie);
     EXPECT_NE(r.refused.find("vertex 0 is not manifold"), std::string::npos) << r.refused;
     EXPECT_TRUE(r.by_level.empty());
+    Cage wing;  // three faces on one edge, each regular
+    wing.positions = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, 0, 1}, {0, 1, 1}};
+    wing.faces = {{0, 2, 3, 1}, {0, 1, 5, 4}, {0, 1, 7, 6}};
+    EXPECT_NE(levels_of(wing).refused.find("not manifold"), std::string::npos);
     Cage hole = star(5, false, 0.2, 0.1);
     hole.holes = {0};
     EXPECT_TRUE(levels_of(hole).by_level.empty());

@@ -1,6 +1,7 @@
 // isoparm verify from the command line: meshes of this and other programs, limits, exit codes.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "expect_program.h"
@@ -41,6 +42,28 @@ TEST(VerifyProgram, TheBorderOfASurfaceIsNoHole) {
     text.erase(face, text.find('\n', face + 1) - face);
     write_all(t / "hole.obj", text);
     expect("verify " + t / "hole.obj" + " --against " + scene("coons") + " --watertight", 2, "Limit watertight: EXCEEDED, 1 holes");
+}
+TEST(VerifyProgram, WhatIsWrongElsewhereHidesNoHole) {
+    const TemporaryFolder t;
+    ASSERT_EQ(run("tessellate " + scene("coons") + " --quiet --tolerance 3e-3rel -o " + t / "m.obj").code, 0);
+    std::string text = read_all(t / "m.obj");
+    const std::size_t face = text.find("\nf ", text.size() / 4 * 3);
+    text.erase(face, text.find('\n', face + 1) - face);
+    const std::string end = "f -1 -2 -3\n";
+    for (const std::string stray : {"v 0 0 9\nv 0.01 0 9\nv 0 0.01 9\n", "v 900 0 0\nv 900 1 0\nv 900 0 1\n"}) {
+        write_all(t / "stray.obj", text + stray + end);
+        expect("verify " + t / "stray.obj" + " --against " + scene("coons") + " --watertight", 2, "Limit watertight: EXCEEDED, 2 holes");
+    }
+}
+TEST(VerifyProgram, ChordsOfAFlatBorderAreNoHoles) {
+    const TemporaryFolder t;
+    write_all(t / "disc.json", R"json({"isoparm": 1, "curves": {"c": {"type": "formula", "xyz": ["cos(t)", "sin(t)", "0"], "domain": [0, "2*pi"]}},
+        "surfaces": {"disc": {"type": "cone", "curve": "c", "apex": [0,0,0]}}})json");
+    std::string mesh = "v 0 0 0\n";  // a hexagon: far from the circle, and in the plane of the disc
+    for (int k = 0; k < 6; ++k) mesh += "v " + std::to_string(std::cos(k * 3.14159265358979 / 3)) + " " + std::to_string(std::sin(k * 3.14159265358979 / 3)) + " 0\n";
+    for (int k = 0; k < 6; ++k) mesh += "f 1 " + std::to_string(2 + k) + " " + std::to_string(2 + (k + 1) % 6) + "\n";
+    write_all(t / "hexagon.obj", mesh);
+    expect("verify " + t / "hexagon.obj" + " --against " + t / "disc.json" + " --surface disc --watertight --junctions 1e-4", 0, "Limit watertight: holds");
 }
 TEST(VerifyProgram, LimitsAndExitCodes) {
     const TemporaryFolder t;

@@ -215,7 +215,7 @@ void print_limit(const LimitResult& result, std::ostream& out) {
     print_levels(result.irregular, out);
     print_loop(result, out);
     if (result.view) print_view(*result.view, out);
-    if (!result.irregular.refused.empty()) out << "\nIrregular faces are not compared: " << result.irregular.refused << "\n";
+    if (!result.irregular.refused.empty()) out << (r.irregular ? "\nIrregular faces are not compared: " : "\nFaces are compared one by one only: ") << result.irregular.refused << "\n";
     print_faces("Compared on sub-cells only", result.cage, result.subcells_only, out);
     print_faces("Not compared", result.cage, r.not_compared, out);
 }

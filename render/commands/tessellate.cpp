@@ -45,12 +45,13 @@ that patches share are found and share their vertices.
 --normals DEGREES the largest angle between a triangle and the surface's normals over it, below 90, proved as well; triangles smaller
                   than the tolerance at poles and apexes are left out and counted (exit code 1). Not with parametric, optimal, .stl or .glb
 --quality Q       fast (default): bisection only; optimal: then vertices move, edges flip and vertices go, under the same proof, until
-                  little is gained: a half to two thirds of the triangles, about a hundred times the time
+                  little is gained: a half to two thirds of the triangles, for a hundred to several hundred times the time
 --vertices V      surface (default): vertices lie on the surface; free: they leave it by up to the tolerance where that saves triangles, about
-                  half of them on convex surfaces, for some ten times the time; proved as certificates are
+                  half of them on convex surfaces and next to nothing on others, for a hundred to a thousand times the time; proved as
+                  certificates are
 --max-triangles N the budget, 20000000; beyond it the command ends with exit code 2 and says what was reached
 --report FILE     JSON: triangles, vertices, tolerance, measure, quality, vertices_on, certified_error, sampled_error, boundary_loops,
-                  t_junctions, non_manifold_edges, normal_deviation (degrees; of all triangles but normals_unproved; null with free, and where float32 moves points), seconds,
+                  t_junctions, non_manifold_edges, normal_deviation (degrees; of all triangles but normals_unproved; null with free, where float32 moves points, and where that is all), seconds,
                   surfaces (with the asymptotic optimum of triangles),
                   format_rounding (how far float32 moves points in .stl and .glb; part of certified_error); - is standard output
 --certificate F   a JSON file that lets isoparm verify --certificate prove the error again: parameters, bound and method of every triangle;
@@ -178,7 +179,7 @@ void write_report(std::ostream& out, const Tessellation& t, const Selection& sel
     out << "{\"triangles\": " << t.mesh.triangle_count() << ", \"vertices\": " << t.mesh.positions.size() << ",\n \"tolerance\": " << json_text(t.tolerance)
         << ", \"measure\": " << json_text(measure) << ", \"quality\": " << json_text(quality) << ", \"vertices_on\": " << (free ? "\"free\"" : "\"surface\"") << ", \"certified_error\": " << json_text(t.certified_error) << ", \"sampled_error\": " << json_text(t.sampled_error)
         << ", \"format_rounding\": " << json_text(format_rounding)
-        << ",\n \"normal_deviation\": " << (measure == "geometric" && !free && format_rounding == 0 ? json_text(t.normal_deviation) : "null") << ", \"normals_unproved\": " << t.normals_unproved
+        << ",\n \"normal_deviation\": " << (measure == "geometric" && !free && format_rounding == 0 && t.normals_unproved < t.mesh.triangle_count() ? json_text(t.normal_deviation) : "null") << ", \"normals_unproved\": " << t.normals_unproved
         << ",\n \"boundary_loops\": " << t.topology.boundary_loops << ", \"boundary_edges\": " << t.topology.boundary_edges << ", \"t_junctions\": " << t.topology.t_junctions
         << ", \"non_manifold_edges\": " << t.topology.non_manifold_edges << ", \"degenerate_triangles\": " << t.topology.degenerate_triangles
         << ",\n \"seconds\": {\"tessellate\": " << json_text(t.seconds_tessellate) << ", \"sample\": " << json_text(t.seconds_sample) << ", \"write\": " << json_text(seconds_write)

@@ -205,8 +205,8 @@ int run(const std::vector<std::string>& arguments) {
     }
     r.defects = find_defects(r.file.mesh, r.junction_distance);
     r.shapes = measure_shapes(r.file.mesh);
-    // Along the border a chord of the mesh is about as far from it as the mesh is from the surface.
-    r.holes = count_holes(r.file.mesh, r.defects, r.distance.border, std::max(4 * r.distance.mesh_to_surface.upper, r.junction_distance) + r.distance.finer_error);
+    // Ends of its edges are about as far from the border as the mesh is from the surface, but for the few places where something is wrong.
+    r.holes = count_holes(r.file.mesh, r.defects, r.distance.border, std::max(4 * r.distance.usual, r.junction_distance) + r.distance.finer_error);
     r.limits = check_limits(r, options, how.limit);
     (options.has("--json") ? print_json : print_text)(std::cout, r);
     if (!r.distance.stopped.empty() && !options.quiet()) std::fprintf(stderr, "isoparm: note: the interval is proved, but wider than %s: %s\n", to_text(how.gap).c_str(), r.distance.stopped.c_str());

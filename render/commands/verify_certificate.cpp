@@ -12,6 +12,7 @@
 #include "json_text.h"
 #include "progress.h"
 #include "sha256.h"
+#include "suggest.h"
 
 namespace isoparm {
 namespace {
@@ -40,6 +41,18 @@ std::string mesh_fault(const Certificate& c, const std::string& path) {
     sort(claimed), sort(found);
     if (claimed == found) return "";
     return path + ": found a mesh of " + std::to_string(found.size()) + " triangles that is not the certificate's, which has " + std::to_string(claimed.size());
+}
+
+/// What the certificate says beside its numbers, and is not so.
+std::vector<std::string> claim_faults(const CertificateFile& file, const Selection& selection) {
+    std::vector<std::string> faults;
+    const Certificate& c = file.certificate;
+    for (std::size_t k = 0; k < std::min(c.patches.size(), selection.patches.size()); ++k) {
+        const CertifiedPatch& p = c.patches[k];
+        if (p.name != selection.patches[k].name) faults.push_back("patch " + std::to_string(k) + ": found the name " + quoted(p.name) + ", expected " + quoted(selection.patches[k].name));
+        if (file.measure == "parametric" && std::any_of(p.triangles.begin(), p.triangles.end(), slides)) faults.push_back(p.name + ": found triangles that slide, which proves the geometric measure only, not the parametric one");
+    }
+    return faults;
 }
 
 struct Report {
@@ -117,6 +130,7 @@ int verify_certificate(const Options& options) {
         if (tolerance) r.limit = absolute_tolerance(*tolerance, finite_diagonal(scene, bounding_box(selection.patches)), options);
         ProgressBar bar("checking", options.quiet());
         r.check = check_certificate(selection.patches, c, 5000, std::ref(bar));
+        for (const std::string& fault : claim_faults(r.file, selection)) r.check.faults.push_back(fault);
         if (r.check.faults.empty() && !options.words().empty())
             if (const std::string fault = mesh_fault(c, options.words().front()); !fault.empty()) r.check.faults.push_back(fault);
     }
