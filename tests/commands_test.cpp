@@ -35,7 +35,6 @@ TEST(Commands, UsageErrorsSuggest) {
     expect("tessellate " + scene("coons") + " -o x.ply --quality best", 64, "expected one of: fast, optimal");
     expect("tessellate " + scene("coons") + " -o x.ply --vertices free --normals 5", 64, "--vertices surface");
     expect("tessellate " + scene("coons") + " -o x.ply --tolerance 0", 64, "expected a positive number");
-    expect("tessellate " + scene("coons") + " -o x.ply --tolerance 1px", 64, "needs a picture");
     expect("tessellate " + scene("coons") + " -o x.ply --measure angular", 64, "expected one of: geometric, parametric");
     expect("render " + scene("coons") + " -o x.png --size 10", 64, "expected WIDTHxHEIGHT");
     expect("figures nothing -o /tmp", 64, "expected one of: cone");

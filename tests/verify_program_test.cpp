@@ -33,6 +33,22 @@ TEST(VerifyProgram, OwnMeshesInEveryFormatKeepTheirTolerance) {
         for (const auto& limit : v["limits"]) EXPECT_TRUE(limit["holds"].asBool()) << limit["what"];
     }
 }
+TEST(VerifyProgram, TolerancesInPixelsAreThoseOfTheScenesPicture) {
+    const TemporaryFolder t;
+    const auto tolerance = [&](const std::string& text) {
+        write_all(t / "s.json", R"({"isoparm": 1, "surfaces": {"s": {"type": "bezier", "points": [[[0,0,0], [0,1,1]], [[1,0,0], [1,1,-1]]]}}, "objects": [{"surface": "s"}], )" + text + "}");
+        const Outcome o = run("tessellate " + t / "s.json" + " --quiet -o " + t / "m.ply --report -");
+        EXPECT_EQ(o.code, 0) << o.err;
+        expect("verify " + t / "m.ply" + " --against " + t / "s.json" + " --tolerance 0.5px", 0, "holds");
+        return parsed(o.out)["tolerance"].asDouble();
+    };
+    const std::string half = R"("tessellation": {"tolerance": {"pixels": 0.5}})";
+    // 4 scene units high in 400 pixels, whatever the size of the surface and where it is in the picture.
+    EXPECT_NEAR(tolerance(R"("camera": {"eye": [0,0,9], "target": [0,0,0], "up": [0,1,0], "orthographic": 4}, "image": {"width": 300, "height": 400}, )" + half), 0.005, 1e-12);
+    // The nearest corner is 8 away from the eye, and away from the axis pixels are finer by the secant of the angle there.
+    const double tan = std::tan(20 * 3.14159265358979 / 180), axis = 0.5 * 2 * 8 * tan / 400;
+    EXPECT_NEAR(tolerance(R"("camera": {"eye": [0,0,9], "target": [0,0,0], "up": [0,1,0], "fov": 40}, "image": {"width": 400, "height": 400}, )" + half), axis / std::sqrt(1 + 2 * tan * tan), 1e-9);
+}
 TEST(VerifyProgram, TheBorderOfASurfaceIsNoHole) {
     const TemporaryFolder t;
     ASSERT_EQ(run("tessellate " + scene("coons") + " --quiet --tolerance 3e-3rel -o " + t / "m.obj").code, 0);
@@ -98,7 +114,7 @@ TEST(VerifyProgram, ErrorsSayWhatIsWrong) {
     expect("verify" + against, 64, "expected one mesh");
     expect("verify " + t / "o.obj", 64, "--against is missing");
     expect("verify " + t / "o.obj" + against + " --gap 0", 64, "--gap: found 0");
-    expect("verify " + t / "o.obj" + against + " --tolerance 1px", 64, "needs a picture");
+    expect("verify " + t / "o.obj" + against + " --tolerance 1px", 2, "EXCEEDED");
     expect("verify " + t / "o.obj" + against + " --surface x", 64, "expected one of");
     expect("verify " + t / "o.xyz.obj" + against, 4, "No such file");
     expect("verify " + source_folder() + "/README.md" + against, 64, "expected .ply, .obj, .stl or .glb");

@@ -1,8 +1,12 @@
 #include "commands/selection.h"
 
+#include <algorithm>
+#include <limits>
 #include <set>
 
+#include "camera.h"
 #include "error.h"
+#include "layout.h"
 
 namespace isoparm {
 namespace {
@@ -31,6 +35,14 @@ Selection select_patches(const Scene& scene, const std::optional<std::string>& s
     for (const Surface& s : scene.surfaces)
         if (drawn.count(s.name)) add_surface(all, s.name, s.patches, drawn.size() > 1);
     return all;
+}
+
+double absolute_tolerance(const Tolerance& t, const Scene& scene, const Bounds& box, const Options& options) {
+    const double diagonal = finite_diagonal(scene, box);
+    if (t.unit != Tolerance::Unit::pixels) return absolute_tolerance(t, diagonal, options);
+    double pixel = std::numeric_limits<double>::infinity();
+    for (const View& view : layout_of(scene, {}).views) pixel = std::min(pixel, finest_pixel(camera_of(view), box));
+    return t.value * pixel;
 }
 
 double absolute_tolerance(const Tolerance& t, double diagonal, const Options& options) {

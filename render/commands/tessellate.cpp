@@ -39,7 +39,8 @@ that patches share are found and share their vertices.
                   points by is counted; a tolerance below that ends with exit code 2). .glb is glTF 2.0, with the
                   surfaces' names, colours and exact normals
 --surface S       one surface, or one patch of it, as in teapot/teapot#7; otherwise all surfaces that the scene draws
---tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal; otherwise the scene's
+--tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal, 0.25px of the finest pixel of the picture that the scene describes:
+                  its camera sees the mesh so near to the surface; otherwise the scene's
 --measure M       geometric (default): the distance of the two sets, both ways; parametric: of points at equal parameters,
                   |S(u,v)-L(u,v)|, which is never less
 --normals DEGREES the largest angle between a triangle and the surface's normals over it, below 90, proved as well; triangles smaller
@@ -212,7 +213,7 @@ int run(const std::vector<std::string>& arguments) {
     check_output(output, scene, options);
     const Selection selection = select_patches(scene, options);
     const Bounds box = bounding_box(selection.patches);
-    const double tolerance = absolute_tolerance(given ? *given : scene.tolerance, finite_diagonal(scene, box), options);
+    const double tolerance = absolute_tolerance(given ? *given : scene.tolerance, scene, box, options);
     if (!(tolerance > 0)) throw_input(scene.place + ": found surfaces of size 0, expected some that a relative tolerance can be taken of");
     const bool glb = extension_of(output) == ".glb", float32 = glb || extension_of(output) == ".stl";
     const double reserved = float32 ? float_rounding_bound(box) : 0;

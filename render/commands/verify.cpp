@@ -35,7 +35,8 @@ MESH              .ply (ascii or binary), .obj, .stl (ascii or binary) or .glb (
 --set p=NUMBER    another value of a parameter of the scene; may be repeated
 
 limits            exit code 2 when one is exceeded, or cannot be decided within the budget
---tolerance T     on the distance: 1e-3 in scene units, 1e-4rel of the bounding-box diagonal of the surfaces
+--tolerance T     on the distance: 1e-3 in scene units, 1e-4rel of the bounding-box diagonal of the surfaces, 0.25px of the finest pixel of
+                  the picture that the scene describes
 --watertight      no holes and no T-junctions; the surfaces' own border is no hole
 --manifold        no edge of more than two triangles, no vertex where fans of triangles meet only there, no two neighbours
                   of opposite orientation
@@ -195,7 +196,7 @@ int run(const std::vector<std::string>& arguments) {
     r.welded = r.file.welded + (options.has("--weld") ? weld_equal_points(r.file.mesh) : 0);
     const Scene scene = options.scene_at(r.scene);
     r.selection = select_patches(scene, options);
-    if (tolerance) how.limit = absolute_tolerance(*tolerance, finite_diagonal(scene, bounding_box(r.selection.patches)), options);
+    if (tolerance) how.limit = absolute_tolerance(*tolerance, scene, bounding_box(r.selection.patches), options);
     r.size = size_of(r.file.mesh);
     r.junction_distance = junctions ? *junctions : 1e-6 * r.size;
     {
