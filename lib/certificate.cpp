@@ -103,8 +103,8 @@ public:
         for (std::uint32_t e = 0; e < edges_.size(); ++e) set(e, edges_[e].slide);
     }
 
-    /// Slides less where a triangle would be farther than `limit`, as sampled; then claims no less than samples show, with a little room.
-    void settle(double limit) {
+    /// Slides less where a triangle would be farther than `limit`, as sampled; then claims no less than samples show, with a little room, and `room` for rounding.
+    void settle(double limit, double room) {
         for (int pass = 0; pass < 3; ++pass) {
             const std::vector<double> far = distances();
             bool any = false;
@@ -113,7 +113,7 @@ public:
             if (!any) break;
         }
         const std::vector<double> far = distances();
-        for (std::size_t i = 0; i < far.size(); ++i) p_.triangles[i].bound = std::max(p_.triangles[i].bound, std::min(limit, kRoom * far[i]));
+        for (std::size_t i = 0; i < far.size(); ++i) p_.triangles[i].bound = std::max(p_.triangles[i].bound, std::min(limit, kRoom * far[i] + room));
     }
 
 private:
@@ -219,7 +219,7 @@ Certificate make_certificate(const Composite& surface, const Tessellation& t, bo
         if (slide) {
             Slides slides(surface[m].patch, all.points, p);
             slides.find();
-            slides.settle(all.certified_error);
+            slides.settle(all.certified_error, 16 * room);
         }
         all.patches.push_back(std::move(p));
     }

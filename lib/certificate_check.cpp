@@ -75,7 +75,7 @@ public:
             const Norms norms = norms_of(piece);
             ++count;
             if (norms.most <= bound_) continue;
-            if (norms.least > bound_ || count == budget) {
+            if (norms.least > bound_ || count >= budget) {
                 proved = false;
                 failure.exceeded = norms.least > bound_;
                 const Barycentric& x = piece[norms.corner];

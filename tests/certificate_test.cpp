@@ -79,6 +79,25 @@ TEST(CertificateCheck, ABoundOnePercentBelowTheErrorIsCaughtAndOneAboveItIsProve
         }
 }
 
+TEST(CertificateCheck, NoTriangleTakesMoreThanItsBudget) {
+    // Bounds just below what can be proved: some pieces of a triangle hold, others never do.
+    const Composite surface{{"S", make_bezier_patch({{{1e9, 0, 0}, {1e9, 1, 0.5}, {1e9, 2, 0}}, {{1e9 + 1, 0, 0.7}, {1e9 + 1, 1, 1}, {1e9 + 1, 2, 0}}, {{1e9 + 2, 0, 0}, {1e9 + 2, 1, 0.2}, {1e9 + 2, 2, 0.4}}})}};
+    Certificate c = certificate_of(surface, 0.01, Measure::geometric);
+    for (auto& t : c.patches[0].triangles) {
+        t.bound = 0;
+        each_sample(c.patches[0], t, [&](const Vec2& q, const std::array<double, 3>& l) {
+            Point x;
+            for (int k = 0; k < 3; ++k) x += l[k] * c.points[c.patches[0].vertex[t.corner[k]]];
+            t.bound = std::max(t.bound, distance(surface[0].patch.point(q.x, q.y), x));
+        });
+    }
+    for (std::size_t budget = 1; budget < 24; ++budget) {
+        const CertificateCheck check = check_certificate(surface, c, budget);
+        EXPECT_FALSE(check.proved());
+        EXPECT_LE(check.pieces, (budget + 30) * c.triangle_count()) << budget;  // the last ones may hold, as many as there are left
+    }
+}
+
 TEST(CertificateCheck, WhateverIsTamperedWithIsRefused) {
     Random random(4002);
     const Composite surface{{"S", make_bezier_patch({{{0, 0, 0}, {0, 1, 0.5}, {0, 2, 0}}, {{1, 0, 0.7}, {1, 1, 1}, {1, 2, 0}}, {{2, 0, 0}, {2, 1, 0.2}, {2, 2, 0.4}}})}};

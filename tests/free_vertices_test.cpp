@@ -70,6 +70,21 @@ TEST(FreeVertices, NeverNeedMoreTrianglesAndAlwaysHaveACertificate) {
         }
 }
 
+TEST(FreeVertices, FarFromTheOriginTheyEndAsSoon) {
+    // Claims that leave no room for rounding were sought for ever there.
+    Random random(31);
+    for (const double away : {0.0, 1e6, 1e9}) {
+        std::vector<std::vector<Point>> net(4, std::vector<Point>(4));
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) net[i][j] = Point{away + i, away + j, away + 2 * random.number()};
+        const Composite surface{{"S", make_bezier_patch(net)}};
+        const TessellationOptions options = at(surface, 1e-3);
+        const Tessellation on = tessellate(surface, options), t = tessellate_free(surface, options);
+        EXPECT_LE(t.certified_error, options.tolerance) << away;
+        EXPECT_LE(t.mesh.triangle_count(), on.mesh.triangle_count()) << away;
+        EXPECT_LT(t.seconds_tessellate, 60) << away;
+    }
+}
 TEST(FreeVertices, SharedEdgesStayShared) {
     const Composite surface = sphere();
     const Tessellation t = tessellate_free(surface, at(surface, 1e-2));
