@@ -15,6 +15,7 @@ namespace isoparm {
 namespace {
 
 constexpr double kUnit = 0x1p-53;
+constexpr int kParts = 8;  // of a cell, along each parameter
 /// For sums of positive numbers whose own rounding is below this: bounds stay bounds.
 constexpr double kMargin = 1 + 1e-9;
 
@@ -75,10 +76,9 @@ void include(Proved& all, double coordinate, const Error3& error) {
     all.error.include(error);
 }
 
-/// Over an 8 x 8 grid of boxes, in which quotients have tight ranges.
-Proved prove_rational(const PolynomialCells::Form& form, const Box& cell) {
-    constexpr int parts = 8;
-    const auto part = [](const Interval& t, int k) {
+/// Over a grid of boxes, in which quotients have tight ranges.
+Proved prove_rational(const PolynomialCells::Form& form, const Box& cell, int parts) {
+    const auto part = [parts](const Interval& t, int k) {
         const auto at = [&](int i) { return i == 0 ? t.lo : i == parts ? t.hi : t.lo + (t.hi - t.lo) * i / parts; };
         return Interval(at(k), at(k + 1));
     };
@@ -96,8 +96,8 @@ Proved prove_rational(const PolynomialCells::Form& form, const Box& cell) {
     }
     return all;
 }
-Proved prove(const PolynomialCells::Form& form, const Box& cell) {
-    if (form.size() == 4) return prove_rational(form, cell);
+Proved prove(const PolynomialCells::Form& form, const Box& cell, int parts) {
+    if (form.size() == 4) return prove_rational(form, cell, parts);
     Proved all;
     for (const Polynomial& p : form) include(all, mag(p.range()), rounding_of(p, half_width(cell.u), half_width(cell.v)));
     return all;
@@ -146,6 +146,11 @@ template <class Use> void each_run(const std::uint32_t* cell, std::size_t n, Use
 
 }  // namespace
 
+FrameError frame_error(const std::vector<Polynomial>& form, const Interval& u, const Interval& v, int parts) {
+    const Error3 e = prove(form, {u, v}, parts).error;
+    return {e.s, e.u, e.v};
+}
+
 const char* to_text(Isa isa) { return isa == Isa::avx512 ? "avx512" : isa == Isa::avx2 ? "avx2" : "baseline"; }
 
 Isa isa_named(const char* name) {
@@ -175,7 +180,7 @@ PolynomialCells::PolynomialCells(const std::vector<double>& lines_u, const std::
     for (std::size_t i = 0; i + 1 < lines_u.size(); ++i)
         for (std::size_t j = 0; j + 1 < lines_v.size(); ++j) {
             const Box cell{{lines_u[i], lines_u[i + 1]}, {lines_v[j], lines_v[j + 1]}};
-            const Proved proved = prove(forms[i * (lines_v.size() - 1) + j], cell);
+            const Proved proved = prove(forms[i * (lines_v.size() - 1) + j], cell, kParts);
             const Error3& e = proved.error;
             largest = std::max(largest, proved.largest);
             du = std::max(du, e.u * half_width(cell.u)), dv = std::max(dv, e.v * half_width(cell.v));

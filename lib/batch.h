@@ -34,6 +34,10 @@ struct FrameError {
     double position = 0, du = 0, dv = 0;
 };
 
+/// Of frames that the loops make of coordinates and, when rational, a denominator, polynomials centred in the middle of a cell: rounding, and what coefficients are known to,
+/// over a grid of parts x parts boxes. Infinite where that has no bound.
+FrameError frame_error(const std::vector<Polynomial>& form, const Interval& u, const Interval& v, int parts);
+
 /// A surface that is polynomial, or rational with a positive denominator, in each cell of a grid. Immutable; safe from every thread.
 class PolynomialCells {
 public:

@@ -1,5 +1,6 @@
 #include "exact_kernel.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "isa_loops.h"
@@ -10,7 +11,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRegular = 0.9;     // of |I - Y J|, which must be below 1: far enough from it for rounding not to matter
 constexpr double kEdgeOn = 1e-9;     // det / (|a| |b|) below which rounding would count
-constexpr double kBetweenLeaves = 1e-3;  // of what counts as meeting a border: between leaves only rounding must not lose a root
 constexpr double kRounding = 1e-14;  // relative: far above that of a few operations in double
 
 #define ISOPARM_LOOPS "exact_loops.inc"
@@ -40,6 +40,10 @@ void CertainPacket::put(int lane, const LeafMap& l) {
     const double of[numbers] = {l.u, l.v, l.hu, l.hv, l.a.x, l.a.y, l.a.z, l.b.x, l.b.y, l.b.z, l.size_a + l.turn_u, l.size_b + l.turn_v, l.turn_u, l.turn_v,
                                 l.uu, l.uv, l.vv, l.size_s + l.size_a + l.size_b + l.bend};
     for (int k = 0; k < numbers; ++k) leaf[k][lane] = of[k];
+}
+
+void CertainPacket::set_off(const FrameError& of) {
+    std::fill_n(off[of_s], RayPacket::lanes, of.position), std::fill_n(off[of_su], RayPacket::lanes, of.du), std::fill_n(off[of_sv], RayPacket::lanes, of.dv);
 }
 
 }  // namespace isoparm

@@ -68,12 +68,15 @@ struct NewtonPacket {
 /// Rays that surely meet leaves, each its own, side by side: about where, in; where and how well that is proved, out.
 struct CertainPacket {
     enum { U, V, Hu, Hv, Ax, Ay, Az, Bx, By, Bz, far_a, far_b, turn_u, turn_v, uu, uv, vv, sizes, numbers };  // of LeafMap; far_a = size_a + turn_u, ...
+    enum { of_s, of_su, of_sv };
     alignas(64) double leaf[numbers][RayPacket::lanes];
     double x[RayPacket::lanes], y[RayPacket::lanes], u[RayPacket::lanes], v[RayPacket::lanes];
-    double frame[9][RayPacket::lanes];  // S, S_u, S_v at (u,v), as they were found
+    double frame[9][RayPacket::lanes];  // S, S_u, S_v at (u,v), as they were found,
+    double off[3][RayPacket::lanes];    // up to so much in each coordinate
     double distance[RayPacket::lanes], error[RayPacket::lanes];  // infinite: not proved
 
     void put(int lane, const LeafMap& map);
+    void set_off(const FrameError& of);  // for all lanes
 };
 
 /// Where float32 numbers of rays go: lanes of each.
@@ -96,11 +99,12 @@ struct ExactKernel {
     /// Begins where the linear map meets the rays, bent as the leaf is in its middle; lanes that are not met once are `gone`.
     void (*begin)(const LeafMap& leaf, const RayPacket& rays, const AimPacket& aim, int n, NewtonPacket& out);
     /// One step with the frames, and where what is left after it is proved to be nothing, with S of where it leads; `newton` or the map that is proved to contract. Is any lane still active?
-    bool (*step)(const LeafMap& leaf, const RayPacket& rays, const AimPacket& aim, bool newton, int n, NewtonPacket& p);
-    /// Sets u and v.
+    /// `between`: roots so far beyond sides between leaves, in parts of what counts as meeting a border, are in both.
+    bool (*step)(const LeafMap& leaf, const RayPacket& rays, const AimPacket& aim, bool newton, double between, int n, NewtonPacket& p);
+    /// Sets u and v, which are off by a unit in the last place or two.
     void (*parameters)(CertainPacket& p);
-    /// One step of Newton's method, which moves u and v, and its proof. `off`: of the frames.
-    void (*certify)(const RayPacket& rays, const FrameError& off, CertainPacket& p);
+    /// One step of Newton's method, which moves u and v, and its proof.
+    void (*certify)(const RayPacket& rays, CertainPacket& p);
 };
 const ExactKernel& exact_kernel(Isa isa);
 

@@ -57,7 +57,8 @@ void ExactPatch::set(Leaf& leaf, const Box& given, std::uint32_t cell) const {
     const auto outer = [](const std::vector<double>& lines, double x) { return std::find(lines.begin(), lines.end(), x) != lines.end(); };
     leaf.outer[0] = outer(lines_u_, leaf.box.u.lo), leaf.outer[1] = leaf.box.u.hi != given.u.hi || outer(lines_u_, leaf.box.u.hi);
     leaf.outer[2] = outer(lines_v_, leaf.box.v.lo), leaf.outer[3] = leaf.box.v.hi != given.v.hi || outer(lines_v_, leaf.box.v.hi);
-    const Enclosure e = patch_.enclose(leaf.box);
+    const auto by_model = pieces_ ? pieces_->enclose(leaf.top, leaves_[leaf.top].box, leaf.box) : std::nullopt;
+    const Enclosure e = by_model ? *by_model : patch_.enclose(leaf.box);
     leaf.u = e.u, leaf.v = e.v;
     leaf.hu = rad(leaf.box.u), leaf.hv = rad(leaf.box.v);
     const auto s = coefficient(e.centre, 0), su = coefficient(e.centre, 1), sv = coefficient(e.centre, 2);
@@ -108,8 +109,8 @@ const ExactPatch::Leaf* ExactPatch::half_of(const Leaf& leaf, int k, std::vector
     const Box box = halves(leaf)[static_cast<std::size_t>(k)];
     if (outside(box)) return nullptr;
     auto made = std::make_unique<Leaf>();
+    made->top = leaf.top, made->depth = leaf.depth + 1;
     set(*made, box, leaf.cell);
-    made->depth = leaf.depth + 1;
     if (made->depth > kKept || kept_.fetch_add(1, std::memory_order_relaxed) >= kMostKept) return kept.emplace_back(std::move(made)).get();
     const Leaf* none = nullptr;
     if (known.compare_exchange_strong(none, made.get(), std::memory_order_acq_rel, std::memory_order_acquire)) return made.release();
@@ -124,6 +125,7 @@ void ExactPatch::add_leaves(const Box& box, std::uint32_t cell, int depth) {
     const bool flat = b * leaf.turn_u + a * leaf.turn_v <= kFlat * area && std::max(a, b) <= kLargest * size_;
     const bool finite_box = finite(leaf.values.low) && finite(leaf.values.high);
     if (flat || depth == 0 || (finite_box && leaf.values.diagonal() <= kSmallest * size_)) {
+        leaf.top = static_cast<std::uint32_t>(leaves_.size() - 1);
         if (!finite_box) throw_input("--exact: the positions of the patch have no bound near u = " + to_text(leaf.u) + ", v = " + to_text(leaf.v));
         return;
     }
@@ -137,6 +139,7 @@ ExactPatch::ExactPatch(const Patch& patch, double size)
     std::uint32_t cell = 0;
     for (std::size_t i = 0; i + 1 < lines_u_.size(); ++i)
         for (std::size_t j = 0; j + 1 < lines_v_.size(); ++j) add_leaves({{lines_u_[i], lines_u_[i + 1]}, {lines_v_[j], lines_v_[j + 1]}}, cell++, kDepth);
+    if (!cells_) pieces_ = std::make_unique<ExactPieces>(patch_, size_, leaves_.size());
 }
 
 }  // namespace isoparm

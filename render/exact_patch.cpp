@@ -12,7 +12,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kPlaces = 1000, kSingularPlaces = 200;  // boxes that a ray may look at in one leaf; where derivatives vanish in it, more find nothing more
 constexpr double kPoint = 1e-9;        // boxes of this size, in sizes of the scene, are not halved again
-constexpr double kSharp = 5e-12;       // proved errors, in sizes of the scene, that need not be sharper
+constexpr double kSharp = 5e-12, kSharpPiece = 1e-11, kSharpGrazing = 1e-10;  // proved errors, in sizes of the scene, that need not be sharper
+constexpr double kBetweenLeaves = 1e-3;  // of what counts as meeting a border: between leaves only rounding must not lose a root
+constexpr double kSpace = 1.7320509;     // at least the length of a vector of coordinates 1
 constexpr int kSteps = 24;
 
 Point middle(const Vec3<Interval>& x) { return {mid(x.x), mid(x.y), mid(x.z)}; }
@@ -33,12 +35,12 @@ void ExactPatch::aim(const Leaf& leaf, const RayPacket& rays, double const* fart
 }
 
 /// Of the lanes that need them.
-void ExactPatch::frames(const Leaf& leaf, int n, NewtonPacket& p) const {
-    if (cells_) {
-        double* rows[9];
-        for (int i = 0; i < 9; ++i) rows[i] = p.frame[i];
-        return cells_->frames_in(leaf.cell, chosen_isa(), static_cast<std::size_t>(n), p.u, p.v, rows);
-    }
+void ExactPatch::frames(const Leaf& leaf, const ExactPiece* quotient, int n, NewtonPacket& p) const {
+    double* rows[9];
+    for (int i = 0; i < 9; ++i) rows[i] = p.frame[i];
+    const auto points = static_cast<std::size_t>(n);
+    if (cells_) return cells_->frames_in(leaf.cell, chosen_isa(), points, p.u, p.v, rows);
+    if (quotient) return quotient->frames(points, p.u, p.v, rows);
     double u[packet], v[packet], out[9][packet];
     int lane[packet];
     std::size_t count = 0;
@@ -55,9 +57,12 @@ void ExactPatch::solve(const Leaf& leaf, const RayPacket& rays, const double* fa
     NewtonPacket p;
     kernel_.begin(leaf, rays, aim, n, p);
     bool going = true;
+    const ExactPiece* known = quotient(leaf);
+    // Quotients of leaves differ by their errors.
+    const double between = std::max(kBetweenLeaves, known ? 2 * kSpace * known->error.position / slack_ : 0);
     for (int step = 0; step < kSteps && going; ++step) {
-        frames(leaf, n, p);
-        going = kernel_.step(leaf, rays, aim, step < 8, n, p);
+        frames(leaf, known, n, p);
+        going = kernel_.step(leaf, rays, aim, step < 8, between, n, p);
     }
     for (int i = 0; i < n; ++i) {
         Roots& to = found[i];
@@ -85,17 +90,34 @@ double ExactPatch::proved_error(const Leaf& leaf, const RayPacket& rays, const A
     double beyond = p.beyond[lane];
     if (beyond > 0 && cells_) {  // the last step was by derivatives that are known to an error, and parameters are rounded
         const FrameError& of = cells_->error();
-        beyond += 1.7320509 * kLastStep * (leaf.hu * of.du + leaf.hv * of.dv);
+        beyond += kSpace * kLastStep * (leaf.hu * of.du + leaf.hv * of.dv);
         beyond += 2.3e-16 * (std::fabs(p.u[lane]) / leaf.hu * (leaf.size_a + leaf.turn_u) + std::fabs(p.v[lane]) / leaf.hv * (leaf.size_b + leaf.turn_v));
     }
     if (cells_) {
-        const double error = distance_to_root(p.step_x[lane], p.step_y[lane], 1.7320509 * cells_->error().position + beyond + rounding);
+        const double error = distance_to_root(p.step_x[lane], p.step_y[lane], kSpace * cells_->error().position + beyond + rounding);
         if (error < kSharp * size_) return error + outside;
     }
+    const auto error_of = [&](const Point& s, double off) {
+        const Point to = s - ray.origin + (p.x[lane] - p.cx[lane]) * leaf.a + (p.y[lane] - p.cy[lane]) * leaf.b;
+        const double f1 = dot(ray.n1, to), f2 = dot(ray.n2, to);
+        return distance_to_root(aim.y11[lane] * f1 + aim.y12[lane] * f2, aim.y21[lane] * f1 + aim.y22[lane] * f2, off + rounding);
+    };
+    // Of grazing rays pieces do not tell as much; and those of parts of leaves are not made for the few rays that meet halves.
+    const bool grazing = distance_to_root(0, 0, kSpace * ExactPieces::wanted * size_) >= kSharpPiece * size_;
+    const auto known_by = [&](const ExactPiece* piece) {
+        double s[9], *rows[9];
+        for (int i = 0; i < 9; ++i) rows[i] = s + i;
+        piece->frames(1, p.u + lane, p.v + lane, rows);
+        return error_of({s[0], s[1], s[2]}, kSpace * piece->error.position);
+    };
+    for (const bool whole : {true, false}) {
+        const ExactPiece* known = whole ? rough(leaf) : grazing || leaf.depth > 0 ? nullptr : piece(leaf.top, p.u[lane], p.v[lane]);
+        if (!known) continue;
+        const double error = known_by(known);
+        if (error < (grazing ? kSharpGrazing : kSharpPiece) * size_) return error + outside;
+    }
     const Vec3<Interval> s = patch_.enclose_point(p.u[lane], p.v[lane]);
-    const Point to = middle(s) - ray.origin + (p.x[lane] - p.cx[lane]) * leaf.a + (p.y[lane] - p.cy[lane]) * leaf.b;
-    const double f1 = dot(ray.n1, to), f2 = dot(ray.n2, to);
-    const double error = distance_to_root(aim.y11[lane] * f1 + aim.y12[lane] * f2, aim.y21[lane] * f1 + aim.y22[lane] * f2, radius(s) + rounding);
+    const double error = error_of(middle(s), radius(s));
     return error < 1e-6 * size_ ? error + outside : kInfinity;
 }
 
@@ -188,37 +210,72 @@ double ExactPatch::enclosed_error(int i, const RayPacket& rays, const CertainPac
     return off / (det * (1 - q)) * (1 + 1e-9) * (size_b * p.leaf[p.far_a][i] + size_a * p.leaf[p.far_b][i]);
 }
 
+/// Frames of the lanes that need them, with what they are off where that is known: in the lanes returned.
+ExactPatch::Lanes ExactPatch::set_frames(const std::uint32_t* leaf, Lanes active, CertainPacket& p) const {
+    const ExactPiece* in[packet];
+    for (int i = 0; i < packet; ++i) {
+        if (!(active >> i & 1)) continue;
+        // A rounded parameter may lie beyond the leaf.
+        const Box& box = leaves_[leaf[i]].box;
+        p.u[i] = std::clamp(p.u[i], box.u.lo, box.u.hi), p.v[i] = std::clamp(p.v[i], box.v.lo, box.v.hi);
+        in[i] = piece(leaf[i], p.u[i], p.v[i]);
+    }
+    Lanes known = 0;
+    while (active) {  // lanes of one piece
+        const ExactPiece* one = in[__builtin_ctz(active)];
+        double u[packet], v[packet], out[9][packet], *rows[9];
+        int lane[packet], count = 0;
+        for (Lanes m = active; m; m &= m - 1)
+            if (const int i = __builtin_ctz(m); in[i] == one) u[count] = p.u[i], v[count] = p.v[i], lane[count++] = i, active &= ~(Lanes(1) << i);
+        int n = count;
+        for (; one && n % RayPacket::group != 0; ++n) u[n] = u[0], v[n] = v[0];  // whole vectors
+        const auto points = static_cast<std::size_t>(n);
+        for (int k = 0; k < 9; ++k) rows[k] = out[k];
+        const auto three = [&](int of) { return std::array<std::span<double>, 3>{{{rows[of], points}, {rows[of + 1], points}, {rows[of + 2], points}}}; };
+        if (one) one->frames(points, u, v, rows);
+        else patch_.frames({u, points}, {v, points}, {three(0), three(3), three(6)});
+        const FrameError off = one ? one->error : FrameError{};
+        for (int k = 0; k < count; ++k) {
+            const int i = lane[k];
+            for (int row = 0; row < 9; ++row) p.frame[row][i] = out[row][k];
+            p.off[p.of_s][i] = off.position, p.off[p.of_su][i] = off.du, p.off[p.of_sv][i] = off.dv;
+            known |= Lanes(one != nullptr) << i;
+        }
+    }
+    return known;
+}
+
 ExactPatch::Lanes ExactPatch::certify(const std::uint32_t* leaf, const RayPacket& rays, const float* x, const float* y, Lanes active, Root* root) const {
     Lanes proved = 0;
+    const double sharp = (cells_ ? kSharp : kSharpPiece) * size_;
     CertainPacket p;
-    while (active) {  // lanes of one cell
+    while (active) {  // lanes of one cell, where there are cells
         const int first = __builtin_ctz(active);
         const std::uint32_t cell = leaves_[leaf[first]].cell;
         Lanes some = 0;
         for (int i = 0; i < packet; ++i) {
-            const bool in = (active >> i & 1) && leaves_[leaf[i]].cell == cell;
+            const bool in = (active >> i & 1) && (!cells_ || leaves_[leaf[i]].cell == cell);
             const int from = in ? i : first;
             p.put(i, leaves_[leaf[from]]), p.x[i] = x[from], p.y[i] = y[from];
             some |= Lanes(in) << i;
         }
         active &= ~some;
         kernel_.parameters(p);
+        if (cells_) p.set_off(cells_->error());
         double* rows[9];
         for (int i = 0; i < 9; ++i) rows[i] = p.frame[i];
         for (int step = 0; step < 3 && some; ++step) {
-            if (cells_) cells_->frames_in(cell, chosen_isa(), packet, p.u, p.v, rows);
-            else {
-                const auto three = [&](int of) { return std::array<std::span<double>, 3>{{{rows[of], packet}, {rows[of + 1], packet}, {rows[of + 2], packet}}}; };
-                patch_.frames({p.u, packet}, {p.v, packet}, {three(0), three(3), three(6)});
-            }
-            kernel_.certify(rays, cells_ ? cells_->error() : FrameError{}, p);
+            Lanes known = some;
+            if (!cells_) known = set_frames(leaf, some, p);
+            else cells_->frames_in(cell, chosen_isa(), packet, p.u, p.v, rows);
+            kernel_.certify(rays, p);
             for (int i = 0; i < packet; ++i) {
                 if (!(some >> i & 1)) continue;
                 if (!std::isfinite(p.error[i]) || (patch_.domain() == Domain::triangle && p.u[i] + p.v[i] > 1)) some &= ~(Lanes(1) << i);
-                else if (p.error[i] < kSharp * size_) {
-                    const double error = cells_ ? p.error[i] : enclosed_error(i, rays, p);
+                else if (p.error[i] < sharp || (!cells_ && step > 0)) {  // pieces do not tell enough of grazing rays
+                    const double error = (known >> i & 1) && p.error[i] < sharp ? p.error[i] : enclosed_error(i, rays, p);
                     some &= ~(Lanes(1) << i);
-                    if (!(error < kSharp * size_)) continue;
+                    if (!(error < sharp)) continue;
                     root[i] = {p.distance[i], p.u[i], p.v[i], error};
                     proved |= Lanes(1) << i;
                 }

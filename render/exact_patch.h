@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "exact_kernel.h"
+#include "exact_pieces.h"
 #include "patch.h"
 
 namespace isoparm {
@@ -63,6 +64,7 @@ private:
     struct Leaf : LeafMap {
         Bounds values;
         std::uint32_t cell = 0;  // of the patch
+        std::uint32_t top = 0;   // the leaf that it is a part of
         int depth = 0;           // bisections below a leaf
         mutable std::array<std::atomic<const Leaf*>, 2> halves{};  // made when a ray first needs them
 
@@ -78,10 +80,15 @@ private:
     /// Half `k` of a leaf, in `kept` where it is too small to be kept for other rays; nullptr outside the domain.
     const Leaf* half_of(const Leaf& leaf, int k, std::vector<std::unique_ptr<const Leaf>>& kept) const;
     void aim(const Leaf& leaf, const RayPacket& rays, const double* farthest, int n, AimPacket& out) const;
-    void frames(const Leaf& leaf, int n, NewtonPacket& p) const;
+    void frames(const Leaf& leaf, const ExactPiece* quotient, int n, NewtonPacket& p) const;
     void solve(const Leaf& leaf, const RayPacket& rays, const double* farthest, const AimPacket& aim, int n, Roots* found) const;
     double proved_error(const Leaf& leaf, const RayPacket& rays, const AimPacket& aim, const NewtonPacket& p, int lane) const;
     double enclosed_error(int lane, const RayPacket& rays, const CertainPacket& p) const;
+    /// In which S is known to an error where the patch is no polynomial; nullptr where there is none.
+    const ExactPiece* piece(std::size_t leaf, double u, double v) const { return pieces_ ? pieces_->at(leaf, leaves_[leaf].box, leaves_[leaf].cell, u, v) : nullptr; }
+    const ExactPiece* quotient(const Leaf& leaf) const { return pieces_ ? pieces_->quotient(leaf.top, leaves_[leaf.top].box, leaf.cell) : nullptr; }
+    const ExactPiece* rough(const Leaf& leaf) const { return pieces_ ? pieces_->rough(leaf.top, leaves_[leaf.top].box, leaf.cell) : nullptr; }
+    Lanes set_frames(const std::uint32_t* leaf, Lanes active, CertainPacket& p) const;
     Lanes visit(const Leaf& leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const;
     void search(const Leaf& leaf, const RayPacket& rays, const double* farthest, int n, Lanes active, Roots* found) const;
     void settle(const Leaf& leaf, const RayPlanes& ray, double farthest, Roots& found) const;
@@ -92,6 +99,7 @@ private:
     const ExactKernel& kernel_;
     const std::vector<double> lines_u_, lines_v_;  // between cells, ends included
     double size_, slack_;
+    std::unique_ptr<ExactPieces> pieces_;  // where there are no cells
     std::deque<Leaf> leaves_;
     mutable std::atomic<std::size_t> kept_{0};  // halves
     mutable std::atomic<std::uint64_t> halved_{0};

@@ -362,7 +362,7 @@ TEST(Exact, EveryInstructionSetGivesTheSameBits) {
                 for (int i = 0; i < RayPacket::lanes; ++i)
                     newton.frame[axis][i] = leaf.s[axis] + newton.cx[i] * leaf.a[axis] + newton.cy[i] * leaf.b[axis], newton.frame[3 + axis][i] = 2 * leaf.a[axis],
                     newton.frame[6 + axis][i] = 2 * leaf.b[axis];
-            kernel.step(leaf, packet, aim, true, RayPacket::lanes, newton);
+            kernel.step(leaf, packet, aim, true, 1e-3, RayPacket::lanes, newton);
             std::vector<double> all(std::begin(start), std::end(start));
             for (const auto& row : single) all.insert(all.end(), std::begin(row), std::end(row));
             for (int i = 0; i < RayPacket::lanes; ++i) {

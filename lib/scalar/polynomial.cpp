@@ -189,4 +189,11 @@ void Polynomial::recentre(const Interval& dx, const Interval& dy, std::vector<In
     for (std::size_t i = 0; i < c_.size(); ++i) out[i] = enclosed(x[i], error[i]);
 }
 
+Polynomial Polynomial::moved(double centre_u, double centre_v, const Interval& u, const Interval& v) const {
+    Polynomial r(p_, q_);
+    recentre(Interval(mid(u)) - Interval(centre_u), Interval(mid(v)) - Interval(centre_v), r.c_);
+    r.x_ = Interval(-rad(u), rad(u)), r.y_ = Interval(-rad(v), rad(v));
+    return r;
+}
+
 }  // namespace isoparm

@@ -75,6 +75,8 @@ public:
     Interval& coefficient(int i, int j) { return c_[i * (q_ + 1) + j]; }
     /// Encloses all values over the box.
     Interval range() const;
+    /// The same function, no model, centred in the middle of the box (u,v); it was centred in (centre_u, centre_v).
+    Polynomial moved(double centre_u, double centre_v, const Interval& u, const Interval& v) const;
 
     friend Polynomial operator+(const Polynomial& a, const Polynomial& b);
     friend Polynomial operator-(const Polynomial& a);
