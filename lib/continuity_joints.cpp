@@ -66,12 +66,15 @@ double snapped(double t, double near) {
 
 bool whole(const Side& s) { return std::min(s.t0, s.t1) <= kSnap && std::max(s.t0, s.t1) >= 1 - kSnap; }
 
+/// Does a second patch use it, or a pair of others run along it?
+bool joined(const Rim& rim) { return rim.uses.size() == 2 || rim.beside != UINT32_MAX; }
+
 /// One joint of all rims that two edges share in one direction.
 std::vector<FoundJoint> joints_of(const Composite& surface, const Topology& topology, double size, double within) {
     std::map<std::tuple<std::uint32_t, int, std::uint32_t, int, bool>, std::vector<std::pair<RimUse, RimUse>>> groups;
     for (const Rim& rim : topology.rims) {
-        if (rim.collapsed || rim.uses.size() != 2) continue;
-        RimUse a = rim.uses[0], b = rim.uses[1];
+        if (rim.collapsed || !joined(rim)) continue;
+        RimUse a = rim.uses[0], b = rim.uses.size() == 2 ? rim.uses[1] : topology.rims[rim.beside].uses[0];
         if (std::tie(b.member, b.edge) < std::tie(a.member, a.edge)) std::swap(a, b);
         if (a.t1 < a.t0) std::swap(a.t0, a.t1), std::swap(b.t0, b.t1);
         groups[{a.member, a.edge, b.member, b.edge, b.t1 < b.t0}].push_back({a, b});
@@ -109,7 +112,7 @@ std::vector<Side> open_runs(const Composite& surface, const Topology& topology, 
             bool before = false;
             for (const EdgeRim& r : topology.edges[m][std::size_t(k)]) {
                 const Rim& rim = topology.rims[r.rim];
-                const bool open = rim.uses.size() == 1 && !rim.collapsed;
+                const bool open = !joined(rim) && !rim.collapsed;
                 if (open && before) runs.back().t1 = r.t1;
                 else if (open) runs.push_back({m, k, r.t0, r.t1, 0});
                 before = open;

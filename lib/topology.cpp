@@ -164,6 +164,7 @@ void separate_sheets(const Composite& surface, Topology& topology, double tolera
             }
             left[a].affine = true;  // it owns the rim now
             const bool paired = left.size() > 1;
+            if (!paired) topology.rims[to].beside = r;
             if (paired && !coincide(surface, left[a], left[b], false, 2 * tolerance)) left[b].affine = false;
             for (const std::size_t i : paired ? std::vector<std::size_t>{a, b} : std::vector<std::size_t>{a}) {
                 for (auto& er : topology.edges[left[i].member][left[i].edge])

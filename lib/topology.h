@@ -23,6 +23,7 @@ struct Rim {
     std::uint32_t a = 0, b = 0;  // nodes
     bool collapsed = false;
     std::vector<RimUse> uses;    // one or two; uses[0] owns the curve: vertices are evaluated by it
+    std::uint32_t beside = UINT32_MAX;  // of the last of an odd number of sheets that touch: the rim of the first pair there
 };
 /// One rim along an edge of a patch, in the edge's own direction.
 struct EdgeRim {

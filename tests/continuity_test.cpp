@@ -198,6 +198,26 @@ TEST(Continuity, NarrowStripsAndThinPlatesHaveNoGaps) {
     EXPECT_TRUE(checked({{"strip", strip}}).joints.empty());
     EXPECT_EQ(checked({{"plate", plate}, {"beside", beside}}).joints.size(), 1u);
 }
+
+TEST(Continuity, AThirdSheetAlongAJointIsCompared) {
+    const auto sheet = [](double x, double z, bool reversed) {  // from the edge x = z = 0
+        std::vector<std::vector<Point>> net(2, std::vector<Point>(3));
+        for (int j = 0; j < 3; ++j) net[0][reversed ? 2 - j : j] = {0, double(j), j == 1 ? 0.5 : 0}, net[1][reversed ? 2 - j : j] = {x, double(j), (j == 1 ? 0.5 : 0) + z};
+        return make_bezier_patch(net);
+    };
+    for (const bool reversed : {false, true}) {
+        const Continuity c = checked({{"A", sheet(1, 0, false)}, {"B", sheet(-1, 0, false)}, {"D", sheet(0, 1, reversed)}});
+        ASSERT_EQ(c.joints.size(), 2u);
+        EXPECT_EQ(c.open.size(), 9u);
+        for (const Joint& j : c.joints) {
+            EXPECT_LT(j.jumps[kC0].upper, 1e-12);
+            const bool third = j.b.member == 2;
+            EXPECT_EQ(j.jumps[kG1].upper < 1e-6, !third);
+            if (third) { EXPECT_GT(j.jumps[kG1].lower, 89); }
+            if (third) { EXPECT_EQ(j.b.t0 > j.b.t1, reversed); }
+        }
+    }
+}
 TEST(Continuity, ASeamIsAJointOfAPatchWithItself) {
     Grid<Point> p;
     for (const Point& q : {Point{0, 0, 0}, Point{3, 1, 0}, Point{-3, 2, 0}, Point{0, 0, 0}}) p.push_back({q, q + Point{0, 0.2, 1}});
