@@ -8,8 +8,9 @@
 namespace isoparm {
 namespace {
 
-// Lengths in pixels of the scene's picture, or in the size of the letters.
-constexpr double kArrow = 13, kArrowHalf = 4, kTick = 6, kBeyond = 34, kNumber = 0.85, kGap = 0.22, kApart = 3.4;
+// Lengths in the size of the letters, those of the first line times 27.648: what letters of a picture of 768 rows have.
+constexpr double kMark = 1 / 27.648, kArrow = 13 * kMark, kArrowHalf = 4 * kMark, kTick = 6 * kMark, kBeyond = 34 * kMark;
+constexpr double kNumber = 0.85, kGap = 0.22, kApart = 3.4;
 
 Vec2 operator+(const Vec2& a, const Vec2& b) { return {a.x + b.x, a.y + b.y}; }
 Vec2 operator-(const Vec2& a, const Vec2& b) { return {a.x - b.x, a.y - b.y}; }
@@ -66,16 +67,28 @@ private:
         const Vec2 along = (1 / pixels) * (high - low), out = outward(k, along);
         const double unit = (axis.high - axis.low) / pixels;  // scene units a pixel, about
 
-        const Point tip = at(k, axis.high + kBeyond * pixel_ * unit),
-                    neck = at(k, axis.high + (kBeyond - 0.8 * kArrow) * pixel_ * unit);
+        const Point tip = at(k, beyond(k, axis.high, kBeyond * letter_, unit)), neck = at(k, beyond(k, axis.high, (kBeyond - 0.8 * kArrow) * letter_, unit));
         line({a, neck});
         if (visible(tip)) arrow(tip, along);
         const auto ticks = axis.ticks ? *axis.ticks : round_ticks(axis.low, axis.high, kApart * letter_ * unit);
         for (const double t : ticks) tick(k, t, out);
         numbers(k, axis, ticks, out, unit);
         if (!axis.name.empty() && visible(tip))
-            text(axis.name, letter_, camera_.project(tip) - (0.3 * kArrow * pixel_) * along, out,
-                 kGap * letter_ + kArrowHalf * pixel_, tip);
+            text(axis.name, letter_, camera_.project(tip) - (0.3 * kArrow * letter_) * along, out,
+                 kGap * letter_ + kArrowHalf * letter_, tip);
+    }
+
+    /// Where the axis is so many pixels beyond its end; less where that is behind the eye, or so far away that it is never reached. `unit`: scene units a pixel, about.
+    double beyond(int k, double end, double pixels, double unit) const {
+        const Vec2 from = camera_.project(at(k, end));
+        const auto reached = [&](double value) { return !visible(at(k, value)) || length(camera_.project(at(k, value)) - from) >= pixels; };
+        double low = end, high = end + pixels * unit;
+        for (int i = 0; i < 6 && !reached(high); ++i) low = high, high = end + 2 * (high - end);
+        for (int i = 0; i < 60; ++i) {
+            const double middle = 0.5 * low + 0.5 * high;
+            (reached(middle) ? high : low) = middle;
+        }
+        return low;
     }
 
     /// Across the axis, away from the middle of what the axes span; down or to the left when they do not tell.
@@ -102,7 +115,7 @@ private:
 
     void arrow(const Point& tip, const Vec2& along) {
         const Vec2 p = camera_.project(tip), across{-along.y, along.x};
-        const double size = pixel_ * std::max(1.0, o_.line.width / 1.5);
+        const double size = letter_ * std::max(1.0, o_.line.width / 1.5);
         const Vec2 base = p - (kArrow * size) * along, notch = p - (0.75 * kArrow * size) * along;
         drawing_.push_back(
             {Filled{{p, base + (kArrowHalf * size) * across, notch, base - (kArrowHalf * size) * across}}, color_,
@@ -113,7 +126,7 @@ private:
         if (!visible(p)) return;
         const Vec2 q = camera_.project(p);
         drawing_.push_back(
-            {Polyline{{q, q + (kTick * pixel_) * out}, 0.8 * o_.line.width * pixel_, {}, false}, color_, opacity(p)});
+            {Polyline{{q, q + (kTick * letter_) * out}, 0.8 * o_.line.width * pixel_, {}, false}, color_, opacity(p)});
     }
     void numbers(int k, const Axes::Axis& axis, const std::vector<double>& ticks, const Vec2& out, double unit) {
         const int digits = digits_of(ticks);
@@ -132,7 +145,7 @@ private:
             } else if (crossing && named && !at_its_end(k)) {
                 text(mark, kNumber * letter_, q, diagonal(k, out), 0.7 * kGap * letter_, p);
             } else if (!crossing || at_its_end(k)) {
-                text(mark, kNumber * letter_, q + (kTick * pixel_) * out, out, kGap * letter_, p);
+                text(mark, kNumber * letter_, q + (kTick * letter_) * out, out, kGap * letter_, p);
             }
         }
     }

@@ -27,9 +27,10 @@ struct Text {
     Vec2 at;          // where the base line begins
     double size = 0;  // of the letters: one em
     MathText text;
-    double halo = 0;  // width of the white rim about the letters
+    double halo = 0;  // width of the rim about the letters
     bool turned = false;  // by a quarter: reads upwards
     std::optional<Vec2> anchor{};  // the point that it names
+    Vec3<double> rim{1, 1, 1};     // colour of the rim
 };
 
 struct DrawingItem {
@@ -39,7 +40,7 @@ struct DrawingItem {
 };
 using Drawing = std::vector<DrawingItem>;
 
-/// Of the white rim of a text: that of a faint one is fainter still, so that a hidden label does not bleach what hides it.
+/// Of the rim of a text: that of a faint one is fainter still, so that a hidden label does not bleach what hides it.
 inline double halo_opacity(double of_text) { return 0.85 * of_text * of_text * of_text * of_text; }
 
 /// A drawing on a part of a picture, seen only there; its pixels begin at (x,y) of the picture.

@@ -120,7 +120,7 @@ Image draw_heat_map(const HeatMap& map, const CameraSettings& settings, int widt
             for (int k = 0; k < 3; ++k) image.at(x, y + l.top)[k] = float(c[k]);
         }
     });
-    paint(legend(map, l), 0, 0, image);
+    paint(legend(map, l), image.width, image.height, 0, 0, image);
     return image;
 }
 

@@ -30,7 +30,7 @@ std::vector<std::string> paper_files(const std::string& path);
 /// Writes each to a temporary name and renames it. Throws Error(io).
 void write_paper(const std::string& path, PaperFigure figure, const Metadata& metadata);
 
-/// Of the white rim of a text whose opacity is for sRGB: about what halo_opacity() makes of light.
+/// Of the rim of a text whose opacity is for sRGB: about what halo_opacity() makes of light.
 inline double printed_halo(double of_text) { return 0.85 * of_text * of_text; }
 
 /// As the format has it, without zeros at the end.

@@ -47,7 +47,7 @@ void add(const Filled& area, const DrawingItem& item, bool, std::string& out) {
 
 std::string halo_of(const Text& text, double opacity) {
     if (!(text.halo > 0)) return "";
-    return " stroke=\"#ffffff\" stroke-width=\"" + decimal(2 * text.halo) + "\" stroke-linejoin=\"round\" paint-order=\"stroke\"" + with_opacity("stroke-opacity", printed_halo(opacity));
+    return " stroke=\"" + color_of(text.rim) + "\" stroke-width=\"" + decimal(2 * text.halo) + "\" stroke-linejoin=\"round\" paint-order=\"stroke\"" + with_opacity("stroke-opacity", printed_halo(opacity));
 }
 std::string anchor_of(const Text& text) {
     return text.anchor ? " data-anchor=\"" + decimal(text.anchor->x) + " " + decimal(text.anchor->y) + "\"" : "";

@@ -177,8 +177,8 @@ private:
         all.samples.missed = pixels > 0 ? missed / pixels : 0;
         all.samples.noise = how_.statistics ? noise() : 0;
         all.whole = done();
-        put_over(frames_of(layout_.views, layout_.pixel), -area_.x0, -area_.y0, layout_.width, layout_.height, options_.vectors, all);
-        put_over(titles_of(scene_, layout_.views), -area_.x0, -area_.y0, layout_.width, layout_.height, options_.vectors, all);
+        put_over(frames_of(layout_.views, layout_.pixel), -area_.x0, -area_.y0, layout_.width, layout_.height, options_.vectors, scene_.image.background, all);
+        put_over(titles_of(scene_, layout_.views), -area_.x0, -area_.y0, layout_.width, layout_.height, options_.vectors, scene_.image.background, all);
         return all;
     }
 

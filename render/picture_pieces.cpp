@@ -1,8 +1,10 @@
 #include "picture_pieces.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "paint.h"
+#include "palette.h"
 
 namespace isoparm {
 
@@ -30,6 +32,14 @@ Image blank(int width, int height, const std::optional<Color>& background) {
 
 namespace {
 
+/// How bright it looks, from 0 to 1.
+double shown(const Color& c) { return srgb_from_linear(0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z); }
+
+Color rim_of(const Color& letters, const Color& background) {
+    if (std::fabs(shown(letters) - shown(background)) > 0.4) return background;
+    return shown(letters) > 0.5 ? Color{0, 0, 0} : Color{1, 1, 1};
+}
+
 void paste(const Image& part, int x0, int y0, Image& whole) {
     for (int y = 0; y < part.height; ++y)
         std::copy_n(part.at(0, y), 4 * static_cast<std::size_t>(part.width), whole.at(x0, y0 + y));
@@ -45,11 +55,15 @@ void paste(const Picture& part, int x0, int y0, Picture& whole) {
                     whole.layers.values.data() + channels * (static_cast<std::size_t>(y0 + y) * whole.image.width + x0));
 }
 
-void put_over(Drawing drawing, int x, int y, int width, int height, bool vectors, Picture& picture) {
+void put_over(Drawing drawing, int x, int y, int width, int height, bool vectors, const std::optional<Color>& background, Picture& picture) {
+    for (DrawingItem& item : drawing) {
+        if (background && shown(*background) < 0.35 && (item.color == ink_color() || item.color == curve_color())) item.color = Color{0.9, 0.9, 0.9};
+        if (auto* text = std::get_if<Text>(&item.shape)) text->rim = rim_of(item.color, background.value_or(Color{1, 1, 1}));
+    }
     if (vectors)
         picture.drawn.push_back({std::move(drawing), x, y, width, height});
     else
-        paint(drawing, -x, -y, picture.image);
+        paint(drawing, width, height, -x, -y, picture.image);
 }
 
 }  // namespace isoparm

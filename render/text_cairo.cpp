@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "error.h"
+#include "math_symbols.h"
 #include "palette.h"
 #include "suggest.h"
 
@@ -36,6 +37,39 @@ void check(cairo_t* c) {
         throw std::runtime_error(std::string("Cairo failed: ") + cairo_status_to_string(status));
 }
 
+std::string character_at(const std::string& text, std::size_t at) {
+    std::size_t n = 1;
+    while (at + n < text.size() && (static_cast<unsigned char>(text[at + n]) & 0xc0) == 0x80) ++n;
+    return text.substr(at, n);
+}
+
+/// Above letters that reach into accents, as capitals do in fonts that have places for accents on small letters only.
+void raise_accents(PangoLayout* layout, const std::string& text, double size, bool italic) {
+    constexpr double kGap = 0.05, kSlant = 0.2;
+    PangoRectangle letter{};
+    double pen = 0, letter_pen = 0, raised = 0;  // raised: by what the accent below was
+    for (GSList* r = pango_layout_get_line(layout, 0)->runs; r; r = r->next) {
+        const auto* item = static_cast<PangoGlyphItem*>(r->data);
+        for (int i = 0; i < item->glyphs->num_glyphs; ++i) {
+            PangoGlyphInfo& glyph = item->glyphs->glyphs[i];
+            PangoRectangle ink;
+            pango_font_get_glyph_extents(item->item->analysis.font, glyph.glyph, &ink, nullptr);
+            if (tex_of_accent(character_at(text, static_cast<std::size_t>(item->item->offset + item->glyphs->log_clusters[i]))).empty()) {
+                letter = ink, letter_pen = pen, raised = 0;
+            } else if (ink.height > 0 && ink.y < 0) {  // it stands above the letter
+                const double bottom = glyph.geometry.y_offset - raised + ink.y + ink.height;  // downward
+                raised += std::max(0.0, bottom - (letter.y - kGap * size * PANGO_SCALE));
+                if (raised > 0) {
+                    const double middle = letter_pen + letter.x + 0.5 * letter.width + (italic ? kSlant * 0.5 * letter.height : 0);
+                    glyph.geometry.y_offset -= static_cast<int>(std::lround(raised));
+                    glyph.geometry.x_offset = static_cast<int>(std::lround(middle - pen - ink.x - 0.5 * ink.width));
+                }
+            }
+            pen += glyph.geometry.width;
+        }
+    }
+}
+
 /// Outlines of the letters, not fitted to the pixels: a text looks alike at every size and place.
 Layout layout_of(cairo_t* c, const TextRun& run, double size) {
     Layout layout(pango_cairo_create_layout(c));
@@ -53,6 +87,7 @@ Layout layout_of(cairo_t* c, const TextRun& run, double size) {
     pango_layout_set_font_description(layout.get(), font.get());
     pango_layout_set_single_paragraph_mode(layout.get(), TRUE);
     pango_layout_set_text(layout.get(), run.text.c_str(), static_cast<int>(run.text.size()));
+    raise_accents(layout.get(), run.text, size * run.scale, run.italic);
     return layout;
 }
 
@@ -300,7 +335,7 @@ Target raster_surface(const Image& image) {
 
 void put_text(cairo_t* c, const DrawingItem& item, const Text& text, bool outlines) {
     if (text.halo > 0) {
-        cairo_set_source_rgba(c, 1, 1, 1, printed_halo(item.opacity));
+        cairo_set_source_rgba(c, srgb_from_linear(text.rim.x), srgb_from_linear(text.rim.y), srgb_from_linear(text.rim.z), printed_halo(item.opacity));
         cairo_new_path(c);
         set(c, text);
         cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);

@@ -38,6 +38,9 @@ bool inside_out(const Mesh& mesh) {
     return volume < -1e-3 * std::pow(area, 1.5);
 }
 
+/// Glass is clear where nothing else is said: a figure's colour, taken twice by what passes, is mud.
+Color color_of(const SceneObject& o, const Color& otherwise) { return o.color.value_or(o.material.kind == Material::Kind::glass ? Color{1, 1, 1} : otherwise); }
+
 constexpr double kFrontTolerance = 2e-3;  // of meshes that only tell front from back, in sizes of the scene
 
 class Builder {
@@ -74,13 +77,13 @@ private:
                 return add_surface(o, objects);
             case SceneObject::Kind::curve:
                 if (o.line.width > 0) return;  // drawn over the picture
-                add_curves(o, {drawn(curve_of(scene_, o))}, o.color.value_or(curve_color()), o);
+                add_curves(o, {drawn(curve_of(scene_, o))}, color_of(o, curve_color()), o);
                 return;
             case SceneObject::Kind::net:
                 return add_net(o);
             case SceneObject::Kind::point:
                 if (o.line.width > 0) return;
-                return add_balls({o.point}, radius_of(o, size_), o.color.value_or(point_color()), o);
+                return add_balls({o.point}, radius_of(o, size_), color_of(o, point_color()), o);
             case SceneObject::Kind::axes:
             case SceneObject::Kind::arrow:
                 return;  // drawn over the picture
@@ -91,7 +94,7 @@ private:
         const Surface& surface = surface_of(scene_, o);
         const Mesh& mesh = mesh_of(surface, objects);
         Thing thing;
-        thing.front = o.color.value_or(surface_color(surfaces_++));
+        thing.front = color_of(o, surface_color(surfaces_++));
         // Both sides of a translucent sheet look alike, so that it keeps its colour where several lie over each other.
         thing.back = o.back.value_or(o.opacity < 1 ? thing.front : back_color(thing.front));
         thing.opacity = o.opacity;
@@ -199,7 +202,7 @@ private:
             const Point a = o.net.points.at(i), d = o.net.points.at(j);
             if (distance(a, d) > 1e-9 * size_) rods.push_back(straight(a, d));
         }
-        const Color color = o.color.value_or(net_color());
+        const Color color = color_of(o, net_color());
         if (!(o.line.width > 0)) add_tubes(rods, radius, color, o);
         add_balls(o.net.points, kNetBall * radius, color, o);
     }

@@ -92,7 +92,7 @@ Picture ViewRendering::picture(const std::vector<Aov>& aovs) const {
     if (spread_) resolved(without_fireflies(film_));
     else resolved(film_);
     p.rays = {film_.rays.rays, film_.rays.undecided};
-    put_over(overlay(scene_, view_.objects, traced_, camera_, how_.pixel, view_.letter, lines_, {view_.inset.has_value(), view_.covered}), -area_.x0, -area_.y0, view_.width, view_.height, how_.vectors, p);
+    put_over(overlay(scene_, view_.objects, traced_, camera_, how_.pixel, view_.letter, lines_, {view_.inset.has_value(), view_.covered}), -area_.x0, -area_.y0, view_.width, view_.height, how_.vectors, scene_.image.background, p);
     return p;
 }
 

@@ -8,7 +8,9 @@
 #include "drawn.h"
 #include "error.h"
 #include "flat_lines.h"
+#include "layout.h"
 #include "overlay.h"
+#include "palette.h"
 #include "paint.h"
 #include "text_cairo.h"
 
@@ -271,7 +273,7 @@ TEST(Paint, BlendsInLinearLightAndOverNothing) {
     Image image{4, 4, std::vector<float>(64, 0)};
     for (int i = 0; i < 8; ++i)  // the upper half white, the lower transparent
         for (int k = 0; k < 4; ++k) image.pixels[4 * i + k] = 1;
-    paint({{Filled{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}}, {0.5, 0, 0}, 0.25}}, 0, 0, image);
+    paint({{Filled{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}}, {0.5, 0, 0}, 0.25}}, image.width, image.height, 0, 0, image);
     EXPECT_NEAR(image.at(1, 0)[0], 0.25 * 0.5 + 0.75, 1e-6);
     EXPECT_NEAR(image.at(1, 0)[1], 0.75, 1e-6);
     EXPECT_EQ(image.at(1, 0)[3], 1);
@@ -280,11 +282,94 @@ TEST(Paint, BlendsInLinearLightAndOverNothing) {
 }
 TEST(Paint, CoversTheAreaThatGeometryHas) {
     Image image{40, 30, std::vector<float>(4800, 0)};
-    paint({{Filled{{{3.25, 4.5}, {33.25, 4.5}, {3.25, 24.5}}}, {1, 1, 1}, 1}}, 0, 0, image);
+    paint({{Filled{{{3.25, 4.5}, {33.25, 4.5}, {3.25, 24.5}}}, {1, 1, 1}, 1}}, image.width, image.height, 0, 0, image);
     EXPECT_NEAR(sum(image, 3), 300, 0.02 * 300);  // Cairo counts in 255ths and samples each pixel 15 x 17 times
     Image line{40, 30, std::vector<float>(4800, 0)};
-    paint({{Polyline{{{5.3, 15.2}, {35.3, 15.2}}, 2.5, {}, false}, {1, 1, 1}, 1}}, 0, 0, line);
+    paint({{Polyline{{{5.3, 15.2}, {35.3, 15.2}}, 2.5, {}, false}, {1, 1, 1}, 1}}, line.width, line.height, 0, 0, line);
     EXPECT_NEAR(sum(line, 3), 75, 0.02 * 75);
+}
+TEST(Paint, APartHasTheBitsOfTheWhole) {
+    Drawing drawing{{Polyline{{{3.3, -8.7}, {71.6, 55.2}, {20.1, 90}}, 3.3, {7, 3}, true}, {0.7, 0.1, 0.1}, 0.8},
+                    {Polyline{{{-20.7, 30.3}, {120.2, 12.9}}, 1.7, {}, false}, {0.1, 0.1, 0.1}, 1},
+                    {Filled{{{10.3, 10.2}, {60.7, 22.8}, {33.1, 58.4}}}, {0, 0, 0.5}, 0.5},
+                    {Text{{8.3, 40.6}, 30, parse_math_text("P_{21}"), 3}, {0, 0, 0}, 1}};
+    Image whole{80, 60, std::vector<float>(4 * 80 * 60, 0.25f)};
+    paint(drawing, 80, 60, 0, 0, whole);
+    for (const auto& [x, y, width, height] : {std::array{13, 7, 40, 30}, std::array{41, 20, 39, 40}, std::array{20, 30, 1, 1}}) {
+        Image part{width, height, std::vector<float>(4 * static_cast<std::size_t>(width * height), 0.25f)};
+        paint(drawing, 80, 60, x, y, part);
+        for (int row = 0; row < height; ++row) EXPECT_TRUE(std::equal(part.at(0, row), part.at(0, row) + 4 * width, whole.at(x, y + row))) << x << " " << y + row;
+    }
+}
+TEST(Text, AccentsStandAboveCapitalsToo) {
+    for (const std::string accent : {"hat", "bar", "vec", "tilde", "dot"})
+        for (const std::string letter : {"P", "S", "N", "x", "n", "l"}) {
+            const TextBox plain = text_box(parse_math_text("$" + letter + "$"), 100), with = text_box(parse_math_text("$\\" + accent + "{" + letter + "}$"), 100);
+            EXPECT_LT(with.top, plain.top - 5) << accent << letter;
+            EXPECT_GT(with.top, plain.top - 45) << accent << letter;
+            EXPECT_EQ(with.bottom, plain.bottom) << accent << letter;
+            // What the letter covers is the letter alone.
+            const Coverage letters = coverage(Text{{50, 150}, 100, parse_math_text("$" + letter + "$")}, 0, 200, 200), both = coverage(Text{{50, 150}, 100, parse_math_text("$\\" + accent + "{" + letter + "}$")}, 0, 200, 200);
+            double below = 0;
+            const int top = static_cast<int>(150 + plain.top + 1);
+            for (int y = top; y < 150; ++y)
+                for (int x = 0; x < 200; ++x) {
+                    const auto of = [&](const Coverage& c) { return x >= c.x0 && x < c.x0 + c.width && y >= c.y0 && y < c.y0 + c.height ? c.part[static_cast<std::size_t>((y - c.y0) * c.width + x - c.x0)] / 255.0 : 0; };
+                    below += std::fabs(of(both) - of(letters));
+                }
+            EXPECT_LT(below, 1) << accent << letter;
+        }
+}
+TEST(Overlay, AxesTowardTheEyeEndWhereOthersDo) {
+    // Seen from above in perspective: an overhang in pixels, wherever the axis runs.
+    Scene scene = from_above(4, 400, 300, 1);
+    scene.camera.orthographic = {};
+    scene.camera.fov = 60;
+    SceneObject& o = add(scene, Kind::axes);
+    o.axes.origin = {1.5, -1.5, 0};
+    for (auto& axis : o.axes.axis) axis = Axes::Axis{};
+    o.axes.axis[0]->low = -1.5, o.axes.axis[0]->high = 2;
+    o.axes.axis[1]->low = -1.5, o.axes.axis[1]->high = 2;
+    o.axes.axis[2]->low = -2, o.axes.axis[2]->high = 7;
+    RenderOptions options;
+    options.vectors = true;
+    const Picture p = render(scene, options);
+    const Camera camera = make_camera(scene.camera, drawn_points(scene), 400, 300);
+    std::vector<Vec2> ends;
+    for (const Point& end : {Point{2, -1.5, 0}, Point{1.5, 2, 0}, Point{1.5, -1.5, 7}}) ends.push_back(camera.project(end));
+    int heads = 0;
+    for (const DrawingItem& item : p.drawn.at(0).drawing)
+        if (const auto* head = std::get_if<Filled>(&item.shape)) {
+            double nearest = 1e9;
+            for (const Vec2& e : ends) nearest = std::min(nearest, std::hypot(head->outline[0].x - e.x, head->outline[0].y - e.y));
+            EXPECT_NEAR(nearest, 34 / 27.648 * layout_of(scene, options).views.at(0).letter, 0.01);
+            ++heads;
+        }
+    EXPECT_EQ(heads, 3);
+}
+TEST(Overlay, OnADarkBackgroundInkIsLightAndRimsAreDark) {
+    for (const bool dark : {false, true}) {
+        Scene scene = from_above(4, 100, 100, 1);
+        scene.image.background = dark ? Color{0.02, 0.03, 0.05} : Color{1, 1, 1};
+        SceneObject& o = add(scene, Kind::point);
+        o.line.width = 4;
+        o.label.text = parse_math_text("P");
+        SceneObject& own = add(scene, Kind::point);
+        own.point = {1, 0, 0}, own.line.width = 4;
+        own.label.text = parse_math_text("Q"), own.label.color = Color{0.5, 0, 0};
+        RenderOptions options;
+        options.vectors = true;
+        int texts = 0;
+        const Picture p = render(scene, options);
+        for (const DrawingItem& item : p.drawn.at(0).drawing)
+            if (const auto* text = std::get_if<Text>(&item.shape)) {
+                const bool first = plain(text->text) == "P";
+                EXPECT_EQ(item.color.x, first ? dark ? 0.9 : ink_color().x : 0.5);
+                if (first) { EXPECT_EQ(text->rim.z, scene.image.background->z); }
+                ++texts;
+            }
+        EXPECT_EQ(texts, 2);
+    }
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ public:
     Image take() { return std::move(sheet_); }
 
 private:
-    void write(const Drawing& drawing, int left, int top) { paint(drawing, -left, -top, sheet_); }
+    void write(const Drawing& drawing, int left, int top) { paint(drawing, sheet_.width - left, sheet_.height - top, -left, -top, sheet_); }
     double letter_;
     int top_, panel_, width_ = 0, height_ = 0, left_ = 0;
     Image sheet_;
