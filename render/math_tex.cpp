@@ -23,13 +23,10 @@ std::string escaped(const std::string& character) {
     return character.find_first_of("#$%&_{}") == std::string::npos ? character : "\\" + character;
 }
 
-/// Words, and what stands between them.
-bool prose(const TextRun& run) {
-    if (run.italic || run.bold || run.scale < 1) return false;
-    for (std::size_t i = 0; i < run.text.size(); ++i)
-        if (run.text[i] == ' ' || (i > 0 && std::isalpha(static_cast<unsigned char>(run.text[i])) && std::isalpha(static_cast<unsigned char>(run.text[i - 1])))) return true;
-    return false;
-}
+/// In scripts it stays mathematics.
+bool prose(const TextRun& run) { return run.prose && run.scale == 1; }
+
+bool letter(const std::string& character) { return character.size() == 1 && std::isalpha(static_cast<unsigned char>(character[0])); }
 
 std::string mathematics(const TextRun& run) {
     std::string all;
@@ -38,11 +35,16 @@ std::string mathematics(const TextRun& run) {
         const std::string& c = list[i];
         std::string name = tex_of_symbol(c), closing;
         for (; i + 1 < list.size() && !tex_of_accent(list[i + 1]).empty(); ++i) all += tex_of_accent(list[i + 1]) + "{", closing += "}";
-        const bool letter = c.size() == 1 && std::isalpha(static_cast<unsigned char>(c[0]));
+        if (!run.italic && !run.bold && closing.empty() && letter(c) && i + 1 < list.size() && letter(list[i + 1])) {  // sin, max
+            all += "\\operatorname{";
+            for (; i < list.size() && letter(list[i]); ++i) all += list[i];
+            all += "}", --i;
+            continue;
+        }
         if (!name.empty()) all += name;
         else if (c.size() > 1) all += "\\text{" + c + "}";
-        else if (run.bold && letter) all += "\\mathbf{" + c + "}";
-        else if (!run.italic && letter) all += "\\mathrm{" + c + "}";
+        else if (run.bold && letter(c)) all += "\\mathbf{" + c + "}";
+        else if (!run.italic && letter(c)) all += "\\mathrm{" + c + "}";
         else all += escaped(c);
         all += closing;
     }

@@ -26,10 +26,13 @@ public:
     explicit Parser(const std::string& text) : text_(text) {}
 
     void prose(std::size_t from, std::size_t to) {
+        const bool before = prose_;
+        prose_ = true;
         for (std::size_t i = from; i < to; i += character(text_, i)) {
             if (text_[i] == '\\' && i + 1 < to && text_[i + 1] == '$') ++i;
             put(text_.substr(i, character(text_, i)), false);
         }
+        prose_ = before;
     }
     void mathematics(std::size_t from, std::size_t to) {
         for (at_ = from; at_ < to;) atom(to);
@@ -185,11 +188,11 @@ private:
             const std::string other = alphabet_.empty() ? "" : math_letter(alphabet_, characters[i]);
             letters += (other.empty() ? characters.substr(i, character(characters, i)) : other) + accents_;
         }
-        if (!fresh_ && !runs_.empty() && runs_.back().italic == italic && runs_.back().bold == bold_) {
+        if (!fresh_ && !runs_.empty() && runs_.back().italic == italic && runs_.back().bold == bold_ && runs_.back().prose == prose_) {
             runs_.back().text += letters;
             return;
         }
-        runs_.push_back({letters, italic, bold_, scale_, rise_, next_});
+        runs_.push_back({letters, italic, bold_, scale_, rise_, next_, prose_});
         fresh_ = false;
         next_ = TextRun::Begins::behind;
     }
@@ -198,7 +201,7 @@ private:
     std::size_t at_ = 0;
     MathText runs_;
     double scale_ = 1, rise_ = 0;
-    bool bold_ = false, upright_ = false, fresh_ = true, after_subscript_ = false;
+    bool bold_ = false, upright_ = false, prose_ = false, fresh_ = true, after_subscript_ = false;
     std::string accents_, alphabet_;  // above each letter; \mathbb or \mathcal
     TextRun::Begins next_ = TextRun::Begins::behind;
     int depth_ = 0;

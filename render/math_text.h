@@ -19,6 +19,7 @@ struct TextRun {
     /// Where it begins: behind everything before; or, for the first run of a superscript that stands over a subscript,
     /// where that subscript began.
     enum class Begins { behind, subscript, over_subscript } begins = Begins::behind;
+    bool prose = false;  // no mathematics
 };
 using MathText = std::vector<TextRun>;
 

@@ -55,6 +55,11 @@ TEST(MathText, GreekProseAndMinus) {
     EXPECT_EQ(plain(number_text(2.5, 2)), "2.5");
     EXPECT_EQ(plain(number_text(-1e-12, 1)), "0");
 }
+TEST(MathText, TexGetsFormulasWhole) {
+    for (const auto& [text, tex] : {std::pair<std::string, std::string>{"$x-y=-1$, $a \\to b$", "$x-y=-1$, $a\\,\\rightarrow \\,b$"}, {"$\\sum_{i=0}^n B_i(t)$ and prose", "$\\sum _{i=0}^{n}\\,B_{i}(t)$ and prose"},
+                                    {"\\sin\\theta", "$\\operatorname{sin}\\theta $"}, {"\\mathrm{d}x", "$\\mathrm{d}x$"}, {"\\hat{\\mathrm{a}}\\mathrm{b}", "$\\hat{\\mathrm{a}}\\mathrm{b}$"}, {"two words", "two words"}})
+        EXPECT_EQ(tex_of(parse_math_text(text)), tex) << text;
+}
 TEST(MathText, FractionsStandInOneLineWithTheBracketsThatTheyNeed) {
     for (const auto& [text, shown] : {std::pair<std::string, std::string>{"\\frac{1}{2}", "1/2"}, {"\\frac12", "1/2"}, {"\\frac{10}{x_{i+1}}", "10/xi+1"}, {"\\frac{u+v}{2\\pi}", "(u+v)/(2π)"}, {"\\frac{ab}{c}", "ab/c"},
                                       {"\\frac{\\partial S}{\\partial u}", "∂\u2009S/∂\u2009u"}, {"\\frac{\\frac{1}{2}}{\\hat{x}}", "(1/2)/x\u0302"}, {"\\sqrt{2}", "√2"}, {"\\sqrt{x^2+1}", "√(x2+1)"}, {"\\sqrt{ab}", "√(ab)"}})
