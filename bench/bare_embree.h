@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "camera.h"
 #include "mesh.h"
+#include "picture/camera.h"
 
 namespace isoparm::bench {
 

@@ -1,5 +1,5 @@
 // peer.cpp -- whole meshes a second, beside OpenCASCADE's BRepMesh: its linear deflection is the tolerance, its angular one the default.
-#include "peer.h"
+#include "study/peer.h"
 
 #include <algorithm>
 #include <array>

@@ -6,11 +6,11 @@
 
 #include "bare_embree.h"
 #include "cases.h"
-#include "drawn.h"
-#include "picture.h"
-#include "sampler.h"
-#include "surfel.h"
-#include "traced_scene.h"
+#include "drawing/drawn.h"
+#include "light/sampler.h"
+#include "light/surfel.h"
+#include "picture/picture.h"
+#include "rays/traced_scene.h"
 
 namespace isoparm::bench {
 namespace {

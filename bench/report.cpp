@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "json_text.h"
+#include "text/json_text.h"
 
 namespace isoparm::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "cases.h"
-#include "drawn.h"
+#include "drawing/drawn.h"
 
 namespace isoparm::bench {
 

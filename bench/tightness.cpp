@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-#include "bound_cell.h"
+#include "bounds/bound_cell.h"
 #include "cases.h"
 
 namespace isoparm::bench {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "batch_kernel.h"
+#include "batch/batch_kernel.h"
 #include "error.h"
 #include "patch.h"
 

@@ -1,4 +1,4 @@
-#include "proof.h"
+#include "bounds/proof.h"
 
 #include <algorithm>
 #include <cmath>

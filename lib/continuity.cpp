@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "continuity_joints.h"
-#include "edge_cells.h"
 #include "error.h"
+#include "joints/continuity_joints.h"
+#include "joints/edge_cells.h"
 #include "topology.h"
 
 namespace isoparm {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "composite.h"
-#include "edge_jump.h"
+#include "joints/edge_jump.h"
 
 namespace isoparm {
 

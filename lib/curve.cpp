@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "curves/modify.h"
-#include "piecewise_bezier.h"
+#include "curves/piecewise_bezier.h"
 
 namespace isoparm {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "closest_approach.h"
-#include "curve_doctor_parts.h"
+#include "curves/closest_approach.h"
+#include "curves/curve_doctor_parts.h"
 
 namespace isoparm {
 

@@ -1,6 +1,6 @@
 // grid_mesh.h -- every patch on one grid, without cracks: fast, and nothing is proved of it.
 #pragma once
-#include "leaf_mesh.h"
+#include "meshes/leaf_mesh.h"
 
 namespace isoparm {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "check_size.h"
-#include "limit_refiner.h"
+#include "subdivision/limit_refiner.h"
 
 namespace isoparm {
 namespace {

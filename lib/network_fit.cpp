@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "closest_approach.h"
-#include "curve_doctor_parts.h"
+#include "curves/closest_approach.h"
 #include "curves/composed.h"
+#include "curves/curve_doctor_parts.h"
 
 namespace isoparm {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "edge_jump.h"
+#include "joints/edge_jump.h"
 #include "patches/coons.h"
 #include "patches/coons_hermite.h"
 #include "patches/gordon.h"

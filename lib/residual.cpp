@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "edge_cells.h"
+#include "joints/edge_cells.h"
 #include "promises.h"
 
 namespace isoparm {

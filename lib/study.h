@@ -9,7 +9,7 @@
 
 #include "composite.h"
 #include "mesh.h"
-#include "mesh_error.h"
+#include "meshes/mesh_error.h"
 
 namespace isoparm {
 
@@ -28,7 +28,7 @@ struct StudyMesh {
     double certified_error = TriangleBound::none, certified_parametric = TriangleBound::none;
 };
 
-/// One row of the table of methods, lib/study_methods.cpp.
+/// One row of the table of methods, lib/study/study_methods.cpp.
 struct StudyMethod {
     const char* name;
     const char* summary;                         // what it does, for people

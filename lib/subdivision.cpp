@@ -9,8 +9,8 @@
 #include "error.h"
 #include "patches/bezier_triangle.h"
 #include "patches/tensor_bezier.h"
-#include "subdivision_cell.h"
-#include "subdivision_face.h"
+#include "subdivision/subdivision_cell.h"
+#include "subdivision/subdivision_face.h"
 
 namespace isoparm {
 namespace {

@@ -14,8 +14,8 @@
 
 #include "check_size.h"
 #include "error.h"
-#include "optimize.h"
-#include "refine.h"
+#include "tessellation/optimize.h"
+#include "tessellation/refine.h"
 #include "topology.h"
 
 namespace isoparm {

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "error.h"
-#include "finer_mesh.h"
-#include "mesh_distance.h"
+#include "meshes/finer_mesh.h"
+#include "meshes/mesh_distance.h"
 #include "scalar/interval.h"
 
 namespace isoparm {

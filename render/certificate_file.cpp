@@ -6,9 +6,9 @@
 #include <ostream>
 
 #include "isoparm_version.h"
-#include "json.h"
-#include "json_text.h"
-#include "suggest.h"
+#include "scene/json.h"
+#include "scene/suggest.h"
+#include "text/json_text.h"
 
 namespace isoparm {
 namespace {

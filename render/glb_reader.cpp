@@ -8,7 +8,7 @@
 #include "error.h"
 #include "io/extension.h"
 #include "io/mesh_scanner.h"
-#include "json.h"
+#include "scene/json.h"
 
 namespace isoparm {
 namespace {

@@ -8,7 +8,7 @@
 #include "commands/guard.h"
 #include "error.h"
 #include "isoparm_version.h"
-#include "suggest.h"
+#include "scene/suggest.h"
 
 using namespace isoparm;
 

@@ -1,5 +1,5 @@
 // aov_test.cpp -- channels beside the colours say what geometry says.
-#include "aov.h"
+#include "picture/aov.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -8,9 +8,9 @@
 #include <map>
 
 #include "expect_program.h"
-#include "image.h"
-#include "palette.h"
-#include "picture.h"
+#include "image/image.h"
+#include "picture/palette.h"
+#include "picture/picture.h"
 
 namespace isoparm {
 namespace {

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 
-#include "bezier_cells.h"
+#include "curves/bezier_cells.h"
 #include "curves/line.h"
 #include "error.h"
 #include "patches/cone.h"

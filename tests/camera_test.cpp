@@ -1,5 +1,5 @@
 // Cameras: where points land, what fits, what is refused.
-#include "camera.h"
+#include "picture/camera.h"
 
 #include <gtest/gtest.h>
 

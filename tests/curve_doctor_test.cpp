@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "closest_approach.h"
 #include "curves/bezier.h"
+#include "curves/closest_approach.h"
 #include "curves/line.h"
 #include "curves/modify.h"
 #include "error.h"

@@ -13,7 +13,7 @@
 
 #include "error.h"
 #include "expect_program.h"
-#include "image_header.h"
+#include "image/image_header.h"
 
 namespace isoparm {
 namespace {

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "expect_program.h"
-#include "image.h"
-#include "image_layers.h"
+#include "image/image.h"
+#include "image/image_layers.h"
 
 namespace isoparm {
 namespace {

@@ -1,5 +1,5 @@
 // The numbers of diff: laws that they keep, values worked out another way, and files that nobody vouches for.
-#include "diff.h"
+#include "diff/diff.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -9,16 +9,16 @@
 #include <limits>
 #include <random>
 
+#include "diff/flip.h"
+#include "diff/image_diff.h"
+#include "diff/ssim.h"
 #include "error.h"
-#include "flip.h"
-#include "image.h"
-#include "image_decoder.h"
-#include "image_diff.h"
-#include "image_header.h"
-#include "image_layers.h"
-#include "image_loader.h"
+#include "image/image.h"
+#include "image/image_decoder.h"
+#include "image/image_header.h"
+#include "image/image_layers.h"
+#include "image/image_loader.h"
 #include "run_program.h"
-#include "ssim.h"
 
 namespace isoparm {
 namespace {

@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "curves/bezier.h"
-#include "math_text.h"
+#include "drawing/math_text.h"
 #include "patches/tensor_bezier.h"
-#include "picture.h"
+#include "picture/picture.h"
 #include "run_program.h"
-#include "scene.h"
+#include "scene/scene.h"
 
 namespace isoparm::test {
 

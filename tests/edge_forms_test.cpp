@@ -10,7 +10,7 @@
 #include "curves/bezier.h"
 #include "curves/bspline.h"
 #include "curves/modify.h"
-#include "edge_cells.h"
+#include "joints/edge_cells.h"
 #include "patches/coons_hermite.h"
 #include "patches/bbg.h"
 #include "patches/nielson.h"

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "environment.h"
 #include "error.h"
-#include "lights.h"
-#include "picture.h"
+#include "light/environment.h"
+#include "light/lights.h"
+#include "picture/picture.h"
 #include "run_program.h"
 #include "samples.h"
 

@@ -1,14 +1,14 @@
 // exact_pieces_test.cpp -- what pieces say of a surface and its derivatives is what intervals of its formula say, up to the proved errors.
-#include "exact_pieces.h"
+#include "rays/exact_pieces.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "exact_patch.h"
 #include "expect_program.h"
-#include "scene.h"
+#include "rays/exact_patch.h"
+#include "scene/scene.h"
 
 namespace isoparm {
 namespace {

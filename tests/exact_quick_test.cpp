@@ -1,5 +1,5 @@
 // exact_quick_test.cpp -- what float32 says of rays and leaves is what double precision proves, or nothing.
-#include "exact_quick.h"
+#include "rays/exact_quick.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <random>
 
 #include "expect_program.h"
-#include "scene.h"
-#include "traced_scene.h"
+#include "rays/traced_scene.h"
+#include "scene/scene.h"
 
 namespace isoparm {
 namespace {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "bezier_cells.h"
+#include "curves/bezier_cells.h"
 #include "expect_program.h"
-#include "scene.h"
-#include "traced_scene.h"
+#include "rays/traced_scene.h"
+#include "scene/scene.h"
 
 namespace isoparm {
 namespace {

@@ -1,5 +1,5 @@
 // exact_test.cpp -- rays against the surfaces themselves meet them where geometry says.
-#include "exact_patch.h"
+#include "rays/exact_patch.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -12,9 +12,9 @@
 
 #include "error.h"
 #include "expect_program.h"
-#include "picture.h"
+#include "picture/picture.h"
+#include "rays/traced_scene.h"
 #include "shapes.h"
-#include "traced_scene.h"
 
 namespace isoparm {
 namespace {

@@ -1,4 +1,4 @@
-#include "expression.h"
+#include "scene/expression.h"
 
 #include <gtest/gtest.h>
 

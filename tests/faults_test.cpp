@@ -11,7 +11,7 @@
 #include <map>
 
 #include "expect_program.h"
-#include "image.h"
+#include "image/image.h"
 
 #ifdef ISOPARM_FAULTS
 

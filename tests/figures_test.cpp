@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "registry.h"
 #include "run_program.h"
-#include "scene.h"
+#include "scene/registry.h"
+#include "scene/scene.h"
 
 namespace isoparm {
 namespace {

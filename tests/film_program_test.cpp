@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "image.h"
+#include "image/image.h"
 #include "run_program.h"
 
 namespace isoparm::test {

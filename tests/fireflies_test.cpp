@@ -8,8 +8,8 @@
 #include <cstring>
 #include <sstream>
 
-#include "fireflies.h"
-#include "picture.h"
+#include "picture/fireflies.h"
+#include "picture/picture.h"
 #include "run_program.h"
 #include "samples.h"
 

@@ -1,13 +1,13 @@
 // flat_lines_test.cpp -- flat lines and axes: where geometry says that they are.
-#include "flat_lines.h"
+#include "drawing/flat_lines.h"
 
-#include "axes.h"
-#include "camera.h"
+#include "drawing/axes.h"
+#include "drawing/drawn.h"
+#include "drawing/overlay.h"
+#include "drawing/paint.h"
 #include "drawing_tests.h"
-#include "drawn.h"
 #include "error.h"
-#include "overlay.h"
-#include "paint.h"
+#include "picture/camera.h"
 
 namespace isoparm {
 namespace {

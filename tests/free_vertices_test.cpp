@@ -1,5 +1,5 @@
 // Meshes whose vertices leave the surface: fewer triangles, and still no point of either set farther from the other than certified.
-#include "free_vertices.h"
+#include "tessellation/free_vertices.h"
 
 #include <gtest/gtest.h>
 

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "bound_cell.h"
+#include "bounds/bound_cell.h"
 #include "curves/bezier.h"
 #include "error.h"
 #include "patches/tensor_bezier.h"
 #include "patches/transformed.h"
-#include "refine.h"
 #include "samples.h"
+#include "tessellation/refine.h"
 #include "tessellation_options.h"
 
 namespace isoparm::tests {

@@ -1,5 +1,5 @@
 // Image files: what is written comes back, or nothing is left behind.
-#include "image.h"
+#include "image/image.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

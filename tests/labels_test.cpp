@@ -1,18 +1,18 @@
 // labels_test.cpp -- texts, where labels stand, and how they are painted.
-#include "labels.h"
+#include "drawing/labels.h"
 
 #include <numbers>
 
-#include "camera.h"
+#include "picture/camera.h"
 #include "drawing_tests.h"
-#include "drawn.h"
+#include "drawing/drawn.h"
 #include "error.h"
-#include "flat_lines.h"
-#include "layout.h"
-#include "overlay.h"
-#include "palette.h"
-#include "paint.h"
-#include "text_cairo.h"
+#include "drawing/flat_lines.h"
+#include "picture/layout.h"
+#include "drawing/overlay.h"
+#include "picture/palette.h"
+#include "drawing/paint.h"
+#include "drawing/text_cairo.h"
 
 namespace isoparm {
 namespace {

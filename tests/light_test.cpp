@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "bsdf.h"
-#include "local_frame.h"
-#include "picture.h"
+#include "light/bsdf.h"
+#include "light/local_frame.h"
+#include "picture/picture.h"
 #include "run_program.h"
 #include "samples.h"
 

@@ -1,6 +1,6 @@
 // Around extraordinary vertices networks of the limit's curves are off by what the eigenvalues of subdivision say, level by level; and what is one polynomial is
 // reproduced wherever it is.
-#include "limit_levels.h"
+#include "subdivision/limit_levels.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -18,11 +18,11 @@
 #include "commands/command.h"
 #include "error.h"
 #include "io/cage_obj.h"
-#include "json.h"
-#include "limit_cell.h"
-#include "limit_compare.h"
-#include "limit_vertices.h"
+#include "scene/json.h"
 #include "subdivision.h"
+#include "subdivision/limit_cell.h"
+#include "subdivision/limit_compare.h"
+#include "subdivision/limit_vertices.h"
 
 namespace isoparm {
 namespace {

@@ -1,5 +1,5 @@
 // A bicubic patch is the Catmull-Clark limit of its own control points; other smooth patches are so to fourth order.
-#include "limit_spline.h"
+#include "subdivision/limit_spline.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include "commands/command.h"
 #include "curves/bezier.h"
 #include "error.h"
-#include "json.h"
 #include "limit.h"
 #include "patches/tensor_bezier.h"
 #include "patches/three_curves.h"
+#include "scene/json.h"
 
 namespace isoparm {
 namespace {

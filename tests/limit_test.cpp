@@ -12,9 +12,9 @@
 #include "commands/limit_report.h"
 #include "error.h"
 #include "io/cage_obj.h"
-#include "json.h"
-#include "limit_compare.h"
 #include "patches/tensor_bezier.h"
+#include "scene/json.h"
+#include "subdivision/limit_compare.h"
 
 namespace isoparm {
 namespace {

@@ -12,9 +12,9 @@
 #include "error.h"
 #include "io/atomic_file.h"
 #include "io/cage_obj.h"
-#include "json.h"
 #include "limit.h"
-#include "limit_composite.h"
+#include "scene/json.h"
+#include "subdivision/limit_composite.h"
 
 namespace isoparm::test {
 namespace {

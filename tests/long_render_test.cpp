@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "error.h"
-#include "picture.h"
+#include "picture/picture.h"
 #include "run_program.h"
 #include "samples.h"
 

@@ -4,15 +4,15 @@
 
 #include <cmath>
 
-#include "bound_cell.h"
+#include "bounds/bound_cell.h"
+#include "bounds/triangle_lanes.h"
+#include "bounds/triangle_shape.h"
 #include "curves/bezier.h"
 #include "patches/side_vertex.h"
 #include "patches/tensor_bezier.h"
 #include "samples.h"
 #include "scalar/elementary.h"
 #include "tessellate.h"
-#include "triangle_lanes.h"
-#include "triangle_shape.h"
 
 namespace isoparm::tests {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "bound_cell.h"
+#include "bounds/bound_cell.h"
 #include "error.h"
 #include "patches/tensor_bezier.h"
 #include "samples.h"

@@ -5,13 +5,13 @@
 
 #include <cmath>
 
-#include "bound_cell.h"
-#include "optimize_estimate.h"
+#include "bounds/bound_cell.h"
+#include "bounds/quiet.h"
 #include "patches/tensor_bezier.h"
 #include "patches/transformed.h"
-#include "quiet.h"
 #include "samples.h"
 #include "shapes.h"
+#include "tessellation/optimize_estimate.h"
 #include "tessellation_options.h"
 
 namespace isoparm::tests {

@@ -1,15 +1,15 @@
 // panels_test.cpp -- panels beside each other, and the picture as a whole: threads, sheets over each other.
-#include "insets.h"
+#include "drawing/insets.h"
 
 #include <tbb/global_control.h>
 
-#include "camera.h"
+#include "drawing/legend.h"
+#include "drawing/text_cairo.h"
 #include "drawing_tests.h"
 #include "error.h"
-#include "layout.h"
-#include "legend.h"
+#include "picture/camera.h"
+#include "picture/layout.h"
 #include "samples.h"
-#include "text_cairo.h"
 
 namespace isoparm {
 namespace {

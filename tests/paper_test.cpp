@@ -1,19 +1,19 @@
 // paper_test.cpp -- figures for print: sizes, anchors, what is drawn over the raster, and that the same figure gives the same bytes.
-#include "paper.h"
+#include "drawing/paper.h"
 
 #include <json/json.h>
 
 #include <numbers>
 #include <regex>
 
-#include "camera.h"
-#include "drawn.h"
+#include "picture/camera.h"
+#include "drawing/drawn.h"
 #include "expect_program.h"
-#include "image.h"
-#include "outlines.h"
+#include "image/image.h"
+#include "drawing/outlines.h"
 #include "printed.h"
-#include "overlay.h"
-#include "text_cairo.h"
+#include "drawing/overlay.h"
+#include "drawing/text_cairo.h"
 
 namespace isoparm {
 namespace {

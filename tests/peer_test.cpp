@@ -1,9 +1,9 @@
 // The peer of studies, OpenCASCADE, where it was found: its meshes are those of the surface, and what it cannot do is said.
 #include <gtest/gtest.h>
 
-#include "drawn.h"
-#include "peer.h"
+#include "drawing/drawn.h"
 #include "run_program.h"
+#include "study/peer.h"
 #include "tessellate.h"
 
 namespace isoparm {

@@ -5,14 +5,14 @@
 #include <cstring>
 #include <numbers>
 
-#include "coverage.h"
-#include "drawn.h"
+#include "drawing/drawn.h"
+#include "light/sample_points.h"
+#include "light/shade_kernel.h"
+#include "light/surfel_kernel.h"
+#include "rays/coverage.h"
 #include "run_program.h"
-#include "sample_points.h"
 #include "samples.h"
-#include "scene_file.h"
-#include "shade_kernel.h"
-#include "surfel_kernel.h"
+#include "scene/scene_file.h"
 
 namespace isoparm {
 namespace {

@@ -1,5 +1,5 @@
 // Pictures whose pixels geometry foretells.
-#include "picture.h"
+#include "picture/picture.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -12,7 +12,7 @@
 #include "patches/side_vertex.h"
 #include "patches/tensor_bezier.h"
 #include "patches/transformed.h"
-#include "progress.h"
+#include "picture/progress.h"
 
 namespace isoparm {
 namespace {

@@ -1,5 +1,5 @@
 // "repair": true in scenes: the curves are put right, it is said once, and nothing else changes.
-#include "repair.h"
+#include "scene/repair.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scene.h"
+#include "scene/scene.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "error.h"
-#include "json.h"
 #include "run_program.h"
-#include "scene_values.h"
+#include "scene/json.h"
+#include "scene/scene_values.h"
 
 namespace isoparm {
 namespace {

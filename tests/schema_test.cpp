@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
-#include "registry.h"
 #include "run_program.h"
+#include "scene/registry.h"
 
 namespace isoparm {
 namespace {

@@ -5,18 +5,18 @@
 #include <cmath>
 #include <numbers>
 
-#include "comb.h"
-#include "color_map.h"
-#include "curvature_map.h"
+#include "drawing/comb.h"
+#include "picture/color_map.h"
+#include "picture/curvature_map.h"
 #include "curves/arc.h"
 #include "curves/bspline.h"
 #include "curves/line.h"
 #include "error.h"
-#include "jump_heat.h"
-#include "legend.h"
+#include "drawing/jump_heat.h"
+#include "drawing/legend.h"
 #include "patches/tensor_bezier.h"
-#include "picture.h"
-#include "twist_arrows.h"
+#include "picture/picture.h"
+#include "drawing/twist_arrows.h"
 #include "run_program.h"
 
 namespace isoparm::test {

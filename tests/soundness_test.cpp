@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <memory>
 
-#include "bound_cell.h"
+#include "bounds/bound_cell.h"
+#include "bounds/triangle_lanes.h"
+#include "bounds/triangle_shape.h"
 #include "samples.h"
-#include "triangle_lanes.h"
-#include "triangle_shape.h"
 
 namespace isoparm::tests {
 namespace {

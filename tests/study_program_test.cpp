@@ -7,14 +7,14 @@
 #include <filesystem>
 #include <set>
 
-#include "image.h"
-#include "json.h"
-#include "plot.h"
+#include "drawing/plot.h"
+#include "drawing/text_cairo.h"
+#include "image/image.h"
 #include "provenance.h"
 #include "run_program.h"
+#include "scene/json.h"
 #include "sha256.h"
-#include "study_table.h"
-#include "text_cairo.h"
+#include "study/study_table.h"
 
 namespace isoparm {
 namespace {

@@ -10,12 +10,12 @@
 #include "composite.h"
 #include "curves/line.h"
 #include "error.h"
-#include "leaf_mesh.h"
-#include "mesh_error.h"
+#include "meshes/leaf_mesh.h"
+#include "meshes/mesh_error.h"
 #include "patches/tensor_bezier.h"
 #include "run_program.h"
-#include "scene.h"
-#include "study_methods.h"
+#include "scene/scene.h"
+#include "study/study_methods.h"
 #include "tessellate.h"
 
 namespace isoparm {

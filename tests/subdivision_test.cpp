@@ -14,9 +14,9 @@
 #include "cages.h"
 #include "error.h"
 #include "limit.h"
-#include "subdivision_face.h"
+#include "meshes/triangle_tree.h"
+#include "subdivision/subdivision_face.h"
 #include "tessellation_options.h"
-#include "triangle_tree.h"
 
 namespace isoparm {
 namespace {

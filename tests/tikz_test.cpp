@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "paper.h"
+#include "drawing/paper.h"
 #include "printed.h"
 
 namespace isoparm {

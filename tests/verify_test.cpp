@@ -7,13 +7,13 @@
 #include <cmath>
 
 #include "error.h"
-#include "mesh_defects.h"
+#include "meshes/mesh_defects.h"
+#include "meshes/triangle_tree.h"
 #include "patches/tensor_bezier.h"
 #include "run_program.h"
 #include "samples.h"
-#include "scene.h"
+#include "scene/scene.h"
 #include "tessellation_options.h"
-#include "triangle_tree.h"
 
 namespace isoparm::tests {
 namespace {

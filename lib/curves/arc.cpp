@@ -1,7 +1,7 @@
 #include "curves/arc.h"
 
+#include "curves/piecewise_bezier.h"
 #include "error.h"
-#include "piecewise_bezier.h"
 
 namespace isoparm {
 namespace {

@@ -1,6 +1,6 @@
 #include "curves/bezier.h"
 
-#include "piecewise_bezier.h"
+#include "curves/piecewise_bezier.h"
 
 namespace isoparm {
 Curve make_bezier(std::vector<Point> points, std::vector<double> weights) {

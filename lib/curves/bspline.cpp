@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "curves/piecewise_bezier.h"
 #include "error.h"
-#include "piecewise_bezier.h"
 
 namespace isoparm {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "curve.h"
-#include "piecewise_bezier.h"
+#include "curves/piecewise_bezier.h"
 
 namespace isoparm {
 /// n points, n + degree + 1 knots that do not decrease, no interior knot more than `degree` times; weights empty or one

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "curves/piecewise_bezier.h"
 #include "error.h"
-#include "piecewise_bezier.h"
 
 namespace isoparm {
 namespace {

@@ -1,8 +1,8 @@
 #include "curves/interpolate.h"
 
 #include "curves/hermite.h"
+#include "curves/piecewise_bezier.h"
 #include "error.h"
-#include "piecewise_bezier.h"
 
 namespace isoparm {
 namespace {

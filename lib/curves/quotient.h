@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "curves/difference.h"
-#include "piecewise_bezier.h"
+#include "curves/piecewise_bezier.h"
 
 namespace isoparm {
 

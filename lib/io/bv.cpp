@@ -4,10 +4,10 @@
 #include <limits>
 #include <map>
 
+#include "curves/piecewise_bezier.h"
 #include "io/token_reader.h"
 #include "patches/bezier_triangle.h"
 #include "patches/tensor_bezier.h"
-#include "piecewise_bezier.h"
 
 namespace isoparm {
 

@@ -6,7 +6,7 @@
 
 #include "error.h"
 #include "io/obj_statements.h"
-#include "printable_text.h"
+#include "text/printable_text.h"
 
 namespace isoparm {
 namespace {

@@ -1,9 +1,9 @@
 // io/curve_records.h -- what readers of curve files share: counts that a hostile file cannot make large, knots, poles.
 #pragma once
 #include "curves/bspline.h"
+#include "curves/piecewise_bezier.h"
 #include "io/curve_file.h"
 #include "io/token_reader.h"
-#include "piecewise_bezier.h"
 
 namespace isoparm {
 

@@ -12,7 +12,7 @@
 
 #include "error.h"
 #include "isoparm_version.h"
-#include "json_text.h"
+#include "text/json_text.h"
 
 namespace isoparm {
 namespace {

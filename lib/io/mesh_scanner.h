@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "io/mesh_reader.h"
-#include "printable_text.h"
+#include "text/printable_text.h"
 
 namespace isoparm {
 

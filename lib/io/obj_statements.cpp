@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "error.h"
-#include "printable_text.h"
+#include "text/printable_text.h"
 
 namespace isoparm {
 namespace {

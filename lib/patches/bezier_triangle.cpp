@@ -1,8 +1,8 @@
 #include "patches/bezier_triangle.h"
 
+#include "curves/piecewise_bezier.h"
 #include "error.h"
 #include "patch_model.h"
-#include "piecewise_bezier.h"
 
 namespace isoparm {
 namespace {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "isa_loops.h"
+#include "batch/isa_loops.h"
 
 namespace isoparm {
 namespace {
 
 #define ISOPARM_LOOPS "patches/tensor_bezier_loops.inc"
-#include "isa_copies.inc"
+#include "batch/isa_copies.inc"
 
 }  // namespace
 

@@ -2,7 +2,7 @@
 
 #include "commands/render_options.h"
 #include "error.h"
-#include "layout.h"
+#include "picture/layout.h"
 
 namespace isoparm {
 

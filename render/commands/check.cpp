@@ -6,9 +6,9 @@
 
 #include "commands/selection.h"
 #include "continuity.h"
-#include "json_text.h"
 #include "promises.h"
-#include "short_text.h"
+#include "text/json_text.h"
+#include "text/short_text.h"
 
 namespace isoparm {
 namespace {

@@ -7,17 +7,17 @@
 
 #include "commands/options.h"
 #include "commands/output.h"
-#include "diff_folders.h"
-#include "diff_report.h"
-#include "diff_selftest.h"
-#include "difference_image.h"
+#include "diff/diff_folders.h"
+#include "diff/diff_report.h"
+#include "diff/diff_selftest.h"
+#include "diff/difference_image.h"
+#include "diff/image_diff.h"
 #include "error.h"
-#include "image_diff.h"
-#include "image_header.h"
+#include "image/image_header.h"
 #include "io/atomic_file.h"
-#include "printable_text.h"
+#include "scene/suggest.h"
 #include "scratch_folder.h"
-#include "suggest.h"
+#include "text/printable_text.h"
 
 namespace isoparm {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "commands/options.h"
 #include "error.h"
-#include "json_text.h"
-#include "suggest.h"
+#include "scene/suggest.h"
+#include "text/json_text.h"
 
 namespace isoparm {
 

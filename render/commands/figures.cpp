@@ -7,11 +7,11 @@
 #include "commands/guard.h"
 #include "commands/output.h"
 #include "commands/render_options.h"
-#include "contact_sheet.h"
+#include "drawing/paint.h"
 #include "error.h"
-#include "paint.h"
-#include "progress.h"
-#include "suggest.h"
+#include "picture/contact_sheet.h"
+#include "picture/progress.h"
+#include "scene/suggest.h"
 
 namespace isoparm {
 

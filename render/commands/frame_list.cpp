@@ -5,10 +5,10 @@
 #include <sstream>
 #include <vector>
 
+#include "drawing/paper.h"
 #include "error.h"
 #include "io/atomic_file.h"
-#include "json.h"
-#include "paper.h"
+#include "scene/json.h"
 #include "sha256.h"
 
 namespace isoparm {

@@ -8,11 +8,11 @@
 
 #include "commands/output.h"
 #include "commands/render_options.h"
-#include "drawn.h"
+#include "drawing/drawn.h"
+#include "drawing/paper.h"
 #include "error.h"
-#include "image.h"
-#include "paper.h"
-#include "suggest.h"
+#include "image/image.h"
+#include "scene/suggest.h"
 
 namespace isoparm {
 

@@ -2,9 +2,9 @@
 #include <sstream>
 
 #include "commands/options.h"
-#include "json_text.h"
-#include "picture.h"
-#include "piecewise_bezier.h"
+#include "curves/piecewise_bezier.h"
+#include "picture/picture.h"
+#include "text/json_text.h"
 
 namespace isoparm {
 

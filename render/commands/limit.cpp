@@ -11,7 +11,7 @@
 #include "error.h"
 #include "io/atomic_file.h"
 #include "io/cage_obj.h"
-#include "json.h"
+#include "scene/json.h"
 
 namespace isoparm {
 namespace {

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "heat_map.h"
-#include "image.h"
+#include "image/image.h"
+#include "picture/heat_map.h"
 #include "provenance.h"
 
 namespace isoparm {

@@ -8,7 +8,7 @@
 #include <ostream>
 #include <sstream>
 
-#include "json_text.h"
+#include "text/json_text.h"
 
 namespace isoparm {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "commands/limit_view.h"
-#include "limit_compare.h"
-#include "limit_levels.h"
+#include "subdivision/limit_compare.h"
+#include "subdivision/limit_levels.h"
 
 namespace isoparm {
 

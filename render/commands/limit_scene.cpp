@@ -8,8 +8,8 @@
 #include "commands/output.h"
 #include "error.h"
 #include "io/atomic_file.h"
-#include "json_text.h"
-#include "limit_spline.h"
+#include "subdivision/limit_spline.h"
+#include "text/json_text.h"
 
 namespace isoparm {
 namespace {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <numbers>
 
-#include "diff.h"
-#include "limit_composite.h"
-#include "palette.h"
-#include "picture.h"
+#include "diff/diff.h"
+#include "picture/palette.h"
+#include "picture/picture.h"
+#include "subdivision/limit_composite.h"
 
 namespace isoparm {
 namespace {

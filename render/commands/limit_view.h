@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "image.h"
-#include "limit_faces.h"
+#include "image/image.h"
+#include "subdivision/limit_faces.h"
 
 namespace isoparm {
 

@@ -5,12 +5,12 @@
 #include <functional>
 
 #include "commands/limit_view.h"
-#include "curvature_map.h"
-#include "legend.h"
-#include "paint.h"
-#include "palette.h"
+#include "drawing/legend.h"
+#include "drawing/paint.h"
+#include "drawing/text_cairo.h"
+#include "picture/curvature_map.h"
+#include "picture/palette.h"
 #include "provenance.h"
-#include "text_cairo.h"
 
 namespace isoparm {
 namespace {

@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "error.h"
-#include "suggest.h"
+#include "scene/suggest.h"
 
 namespace isoparm {
 

@@ -8,7 +8,7 @@
 
 #include "error.h"
 #include "io/atomic_file.h"
-#include "suggest.h"
+#include "scene/suggest.h"
 
 namespace isoparm {
 

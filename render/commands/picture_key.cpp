@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "error.h"
-#include "json.h"
 #include "provenance.h"
+#include "scene/json.h"
 #include "sha256.h"
 
 namespace isoparm {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "commands/options.h"
-#include "picture.h"
+#include "picture/picture.h"
 
 namespace isoparm {
 

@@ -10,12 +10,12 @@
 #include "commands/picture_key.h"
 #include "commands/render_options.h"
 #include "commands/turntable.h"
-#include "paper.h"
-#include "progress.h"
+#include "drawing/paper.h"
+#include "image/video.h"
+#include "picture/progress.h"
+#include "scene/suggest.h"
 #include "scratch_folder.h"
-#include "short_text.h"
-#include "suggest.h"
-#include "video.h"
+#include "text/short_text.h"
 
 namespace isoparm {
 

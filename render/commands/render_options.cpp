@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "drawing/paper.h"
 #include "error.h"
 #include "isoparm_version.h"
-#include "paper.h"
-#include "short_text.h"
-#include "suggest.h"
+#include "scene/suggest.h"
+#include "text/short_text.h"
 
 namespace isoparm {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "commands/options.h"
-#include "picture.h"
+#include "picture/picture.h"
 
 namespace isoparm {
 /// WIDTHxHEIGHT after the option of that name, when it is given, each from `least` to `most`. Throws Error(usage).

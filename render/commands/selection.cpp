@@ -4,9 +4,9 @@
 #include <limits>
 #include <set>
 
-#include "camera.h"
 #include "error.h"
-#include "layout.h"
+#include "picture/camera.h"
+#include "picture/layout.h"
 
 namespace isoparm {
 namespace {

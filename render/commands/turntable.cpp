@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "layout.h"
+#include "picture/layout.h"
 #include "transform.h"
 
 namespace isoparm {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "picture.h"
+#include "picture/picture.h"
 
 namespace isoparm {
 

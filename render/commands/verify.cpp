@@ -11,11 +11,11 @@
 #include "commands/verify_certificate.h"
 #include "error.h"
 #include "glb_reader.h"
-#include "json.h"
-#include "json_text.h"
-#include "mesh_defects.h"
-#include "progress.h"
-#include "short_text.h"
+#include "meshes/mesh_defects.h"
+#include "picture/progress.h"
+#include "scene/json.h"
+#include "text/json_text.h"
+#include "text/short_text.h"
 
 namespace isoparm {
 namespace {

@@ -8,11 +8,11 @@
 #include "commands/selection.h"
 #include "error.h"
 #include "glb_reader.h"
-#include "json.h"
-#include "json_text.h"
-#include "progress.h"
+#include "picture/progress.h"
+#include "scene/json.h"
+#include "scene/suggest.h"
 #include "sha256.h"
-#include "suggest.h"
+#include "text/json_text.h"
 
 namespace isoparm {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "error.h"
-#include "image_header.h"
+#include "image/image_header.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     for (const auto& [extension, format] : isoparm::readable_formats()) {

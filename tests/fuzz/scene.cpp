@@ -4,7 +4,7 @@
 #include <tbb/global_control.h>
 
 #include "error.h"
-#include "scene_file.h"
+#include "scene/scene_file.h"
 #include "scene_mutator.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

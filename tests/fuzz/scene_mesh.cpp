@@ -6,7 +6,7 @@
 
 #include "error.h"
 #include "promises.h"
-#include "scene_file.h"
+#include "scene/scene_file.h"
 #include "scene_mutator.h"
 #include "tessellate.h"
 

@@ -1,7 +1,7 @@
 // continuity_laws_test.cpp -- the models that jumps are bounded by hold what they model: for all operations, and every type of patch.
 #include <gtest/gtest.h>
 
-#include "edge_side.h"
+#include "joints/edge_side.h"
 #include <functional>
 
 #include "curves/modify.h"

@@ -8,8 +8,8 @@
 #include "curves/hermite.h"
 #include "curves/interpolate.h"
 #include "curves/modify.h"
+#include "curves/piecewise_bezier.h"
 #include "patches/tensor_bezier.h"
-#include "piecewise_bezier.h"
 #include "samples.h"
 
 namespace isoparm::tests {

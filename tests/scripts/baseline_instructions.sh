@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The program runs on the machine it was built for: AVX (instructions v... on vector registers) is used only in the loops that lib/isa_loops.h
+# The program runs on the machine it was built for: AVX (instructions v... on vector registers) is used only in the loops that lib/batch/isa_loops.h
 # marks for it (functions kernel_avx..., and all of the namespaces avx2 and avx512), which are called after asking the processor.
 set -euo pipefail
 if ! command -v objdump >/dev/null || [ "$(uname -m)" != x86_64 ]; then echo "skipped: no objdump, or not x86-64"; exit 0; fi

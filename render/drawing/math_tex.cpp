@@ -1,0 +1,102 @@
+#include <cctype>
+#include <cmath>
+
+#include "drawing/math_symbols.h"
+#include "drawing/math_text.h"
+
+namespace isoparm {
+namespace {
+
+std::vector<std::string> characters(const std::string& text) {
+    std::vector<std::string> all;
+    for (const char c : text) {
+        if ((static_cast<unsigned char>(c) & 0xc0) != 0x80) all.emplace_back();
+        all.back() += c;
+    }
+    return all;
+}
+
+std::string escaped(const std::string& character) {
+    if (character == "\\") return "\\textbackslash{}";
+    if (character == "~") return "\\textasciitilde{}";
+    if (character == "^") return "\\textasciicircum{}";
+    return character.find_first_of("#$%&_{}") == std::string::npos ? character : "\\" + character;
+}
+
+/// In scripts it stays mathematics.
+bool prose(const TextRun& run) { return run.prose && run.scale == 1; }
+
+bool letter(const std::string& character) { return character.size() == 1 && std::isalpha(static_cast<unsigned char>(character[0])); }
+
+std::string mathematics(const TextRun& run) {
+    std::string all;
+    const auto list = characters(run.text);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const std::string& c = list[i];
+        std::string name = tex_of_symbol(c), closing;
+        for (; i + 1 < list.size() && !tex_of_accent(list[i + 1]).empty(); ++i) all += tex_of_accent(list[i + 1]) + "{", closing += "}";
+        if (!run.italic && !run.bold && closing.empty() && letter(c) && i + 1 < list.size() && letter(list[i + 1])) {  // sin, max
+            all += "\\operatorname{";
+            for (; i < list.size() && letter(list[i]); ++i) all += list[i];
+            all += "}", --i;
+            continue;
+        }
+        if (!name.empty()) all += name;
+        else if (c.size() > 1) all += "\\text{" + c + "}";
+        else if (run.bold && letter(c)) all += "\\mathbf{" + c + "}";
+        else if (!run.italic && letter(c)) all += "\\mathrm{" + c + "}";
+        else all += escaped(c);
+        all += closing;
+    }
+    return all;
+}
+
+/// Opens and closes _{ and ^{ as base lines and sizes change.
+class Writer {
+public:
+    std::string run(const MathText& text) {
+        for (const TextRun& r : text) prose(r) ? words(r) : formula(r);
+        leave();
+        return out_;
+    }
+
+private:
+    struct Level {
+        double scale, rise;
+    };
+    void words(const TextRun& r) {
+        leave();
+        for (const std::string& c : characters(r.text)) {
+            const std::string name = tex_of_symbol(c);
+            out_ += name.empty() ? escaped(c) : "$" + name + "$";
+        }
+    }
+    void formula(const TextRun& r) {
+        if (!inside_) out_ += "$", inside_ = true;
+        const auto same = [&](const Level& l) { return std::fabs(l.scale - r.scale) < 1e-9 && std::fabs(l.rise - r.rise) < 1e-9; };
+        while (!same(levels_.back()) && levels_.size() > 1 && levels_.back().scale <= r.scale + 1e-9) close();
+        if (!same(levels_.back())) {
+            out_ += r.rise < levels_.back().rise ? "_{" : "^{";
+            levels_.push_back({r.scale, r.rise});
+        }
+        out_ += mathematics(r);
+    }
+    void close() {
+        out_ += "}";
+        levels_.pop_back();
+    }
+    void leave() {
+        while (levels_.size() > 1) close();
+        if (inside_) out_ += "$";
+        inside_ = false;
+    }
+    std::string out_;
+    bool inside_ = false;
+    std::vector<Level> levels_{{1, 0}};
+};
+
+}  // namespace
+
+std::string tex_of(const MathText& text) { return Writer().run(text); }
+
+}  // namespace isoparm

@@ -1,0 +1,176 @@
+#include "light/path_lighting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "light/bsdf.h"
+#include "light/surfel.h"
+
+namespace isoparm {
+namespace {
+
+constexpr int kSure = 3;  // bounces before a path may end by chance
+enum Dimension { kChoices, kPlaceOnLight, kDirection, kChances };
+
+const Color kWhite{1, 1, 1};
+
+/// What the surfel shows, its ink included.
+Color reflectance(const Surfel& s) { return (1 - s.ink_cover) * s.color + s.ink_cover * s.ink; }
+
+}  // namespace
+
+struct PathLighting::Path {
+    Surfel at;
+    Color throughput = kWhite, light;
+    Color to_lamps;       // throughput for lights but the sky: without caustics, only what is scattered evenly
+    Ray ray;              // from `at` on
+    double density = 0;   // of its direction; 0: the only one
+    bool spread = false;  // was scattered evenly at some point
+    bool ended = false;
+};
+
+/// The paths of one call that go on.
+struct PathLighting::Batch {
+    const TracedScene& scene;
+    int bounce = 0, n = 0;
+    Path paths[EmbreeScene::packet];
+    int number[EmbreeScene::packet];  // of the surfel
+
+    /// `sheet`: of those that a ray passes.
+    Vec2 random(const Path& p, Dimension d, int sheet = 0) const {
+        constexpr int apart = 1 << 16;  // dimensions: more than all layers and bounces of a pixel use
+        return (*p.at.sample.sampler)(p.at.sample.number, p.at.dimension + kDimensions * bounce + d + apart * sheet);
+    }
+    void drop_ended(Color* out) {
+        int kept = 0;
+        for (int i = 0; i < n; ++i) {
+            if (paths[i].ended) {
+                out[number[i]] = paths[i].light;
+                continue;
+            }
+            if (kept != i) paths[kept] = paths[i], number[kept] = number[i];
+            ++kept;
+        }
+        n = kept;
+    }
+};
+
+PathLighting::PathLighting(const LightingSettings& settings, const Camera& camera, const EnvironmentImages& images, const std::optional<Ground>& ground)
+    : settings_(settings), camera_(camera), lights_(settings.lights, camera, images) {
+    if (ground) sky_on_ground_ = lights_.sky_irradiance(ground->up);
+}
+
+void PathLighting::shade(const TracedScene& scene, const Surfel* surfels, int n, Color* out) const {
+    Batch batch{scene, 0, n, {}, {}};
+    for (int i = 0; i < n; ++i) batch.paths[i].at = surfels[i], batch.number[i] = i;
+    for (; batch.n > 0; ++batch.bounce) {
+        ask_lights(batch);
+        scatter(batch);
+        batch.drop_ended(out);
+        follow(batch);
+        if (batch.bounce == settings_.bounces)
+            for (int i = 0; i < batch.n; ++i) batch.paths[i].ended = true;
+        batch.drop_ended(out);
+    }
+    for (int i = 0; i < n; ++i)
+        if (surfels[i].ground) {  // from what it lacks to the part that it lacks
+            const Color all = (1 / std::numbers::pi) * (sky_on_ground_ + lights_.irradiance(surfels[i].origin, surfels[i].normal));
+            const auto part = [](double lacks, double of) { return of > 0 ? lacks / of : 0; };
+            out[i] = {part(out[i].x, all.x), part(out[i].y, all.y), part(out[i].z, all.z)};
+        }
+}
+
+void PathLighting::ask_lights(Batch& batch) const {
+    Ray to_light[EmbreeScene::packet];
+    Color arriving[EmbreeScene::packet];
+    double part[EmbreeScene::packet];
+    std::uint32_t active = 0;
+    for (int i = 0; i < batch.n; ++i) {
+        const Path& p = batch.paths[i];
+        const LocalFrame frame(p.at.normal);
+        const Bsdf bsdf(*p.at.material, reflectance(p.at), !p.at.front);
+        to_light[i] = {p.at.origin, p.at.normal};
+        if (bsdf.specular()) continue;
+        const Lights::Sample l = lights_.sample(p.at.origin, batch.random(p, kChoices).x, batch.random(p, kPlaceOnLight));
+        const Point out = frame.to_local(p.at.view), in = frame.to_local(l.direction);
+        if (!(in.z > 0)) continue;
+        const double chosen = bsdf.density(out, in), both = l.density * l.density + chosen * chosen;
+        const double weight = l.density > 0 && !(p.at.ground && !(l.sky > 0)) ? l.density * l.density / both : 1;
+        Color scattered = bsdf.value(out, in);
+        if (p.spread && !settings_.caustics) scattered = l.sky * scattered + (1 - l.sky) * bsdf.spread(out, in);
+        arriving[i] = weight * product(product(p.throughput, scattered), l.radiance);
+        to_light[i] = {p.at.origin, l.direction, l.distance};
+        if (arriving[i].x + arriving[i].y + arriving[i].z > 0) active |= 1u << i;
+    }
+    batch.scene.embree->transmittance(to_light, batch.n, active, part, EmbreeScene::Shadows::physical);
+    for (int i = 0; i < batch.n; ++i)
+        if (active >> i & 1) batch.paths[i].light += (batch.paths[i].at.ground ? part[i] - 1 : part[i]) * arriving[i];
+}
+
+void PathLighting::scatter(Batch& batch) const {
+    for (int i = 0; i < batch.n; ++i) {
+        Path& p = batch.paths[i];
+        const LocalFrame frame(p.at.normal);
+        const Bsdf bsdf(*p.at.material, reflectance(p.at), !p.at.front);
+        const Point out = frame.to_local(p.at.view);
+        const Bsdf::Sample s = bsdf.sample(out, batch.random(p, kChoices).y, batch.random(p, kDirection));
+        const bool caustic = p.spread && !settings_.caustics;  // what the coat, metal or glass would throw now
+        const Color even = s.density > 0 && !bsdf.specular() ? bsdf.spread(out, s.direction) / s.density : Color{};
+        p.to_lamps = product(p.throughput, caustic ? even : s.weight);
+        p.throughput = product(p.throughput, s.weight);
+        const double most = std::max({p.throughput.x, p.throughput.y, p.throughput.z});
+        p.ended = !(most > 0);
+        if (p.ended) continue;
+        if (batch.bounce >= kSure) {  // the lighter a path, the likelier it ends; what goes on weighs more
+            const double goes_on = std::min(1.0, most);
+            if (batch.random(p, kChances).x >= goes_on) p.ended = true;
+            p.throughput = p.throughput / goes_on, p.to_lamps = p.to_lamps / goes_on;
+        }
+        p.ray = {s.direction.z > 0 ? p.at.origin : p.at.beneath, normalized(frame.to_world(s.direction))};
+        p.density = bsdf.specular() ? 0 : s.density;
+        p.spread = p.spread || s.spread;
+    }
+}
+
+/// Where each ray is scattered: the first hit, or the first sheet that by chance does not let it pass.
+void PathLighting::find_points(const Batch& batch, Hit* hits) const {
+    const EmbreeScene& embree = *batch.scene.embree;
+    Ray rays[EmbreeScene::packet];
+    for (int i = 0; i < batch.n; ++i) rays[i] = batch.paths[i].ray;
+    if (!embree.translucent()) return embree.intersect(rays, batch.n, hits);
+    std::vector<Hit> layers;
+    for (int i = 0; i < batch.n; ++i) {
+        embree.layers(rays[i], layers);
+        hits[i] = Hit{};
+        for (std::size_t k = 0; k < layers.size() && !hits[i].found(); ++k)
+            if (batch.random(batch.paths[i], kChances, static_cast<int>(k)).y < batch.scene.things[layers[k].geometry].opacity) hits[i] = layers[k];
+    }
+}
+
+void PathLighting::follow(Batch& batch) const {
+    Hit hits[EmbreeScene::packet], met[EmbreeScene::packet];
+    find_points(batch, hits);
+    Ray met_by[EmbreeScene::packet];
+    int who[EmbreeScene::packet], count = 0;
+    for (int i = 0; i < batch.n; ++i) {
+        Path& p = batch.paths[i];
+        p.ended = !hits[i].found();
+        if (p.at.ground) {  // lamps were asked for already; what hides the sky takes its light away
+            if (!p.ended) p.light += -1 * product(p.throughput, lights_.sky(p.ray.direction) + lights_.behind(p.ray, p.density));
+        } else {
+            p.light += product(p.to_lamps, lights_.met(p.ray, hits[i].distance, p.density, false));
+            if (p.ended) p.light += product(p.throughput, lights_.sky(p.ray.direction) + lights_.met(p.ray, hits[i].distance, p.density, true));
+        }
+        if (!p.ended) who[count] = i, met_by[count] = p.ray, met[count++] = hits[i];
+    }
+    Surfel surfels[EmbreeScene::packet];
+    surfels_at(batch.scene, camera_, met_by, met, count, surfels);
+    for (int k = 0; k < count; ++k) {
+        Surfel& at = batch.paths[who[k]].at;
+        surfels[k].sample = at.sample, surfels[k].dimension = at.dimension;
+        at = surfels[k];
+    }
+}
+
+}  // namespace isoparm

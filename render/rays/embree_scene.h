@@ -1,0 +1,79 @@
+// embree_scene.h -- what rays meet. Embree itself is known to embree_scene.cpp and embree_patches.cpp only.
+//
+// Embree computes in float32: everything is stored relative to `centre`, and rays begin where they enter the scene.
+// Immutable after commit(), and then safe to query from every thread; queries set the processor to flush subnormal
+// numbers for their own duration only.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "mesh.h"
+#include "picture/camera.h"
+#include "rays/exact_patch.h"
+
+namespace isoparm {
+
+struct Hit {
+    static constexpr std::uint32_t none = ~0u;
+    double distance = std::numeric_limits<double>::infinity();
+    std::uint32_t geometry = none, primitive = 0;
+    double u = 0, v = 0;  // of triangles: weights of corners 1 and 2; of patches: parameters
+    Point normal;         // geometric, outward, not of unit length; not of patches
+    double error = 0;     // of patches: Root::error
+    bool found() const { return geometry != none; }
+};
+
+class EmbreeScene {
+public:
+    static constexpr int packet = 16;  // rays a call
+
+    explicit EmbreeScene(const Point& centre);
+    ~EmbreeScene();
+    EmbreeScene(const EmbreeScene&) = delete;
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+    /// One geometry a part, numbered one after the other; returns the first. All parts share the vertices, so that rays
+    /// do not slip through between them.
+    std::uint32_t add_mesh(const Mesh& mesh, double opacity);
+    /// The patch itself, which must live as long; its neighbours are those of the same `group`.
+    std::uint32_t add_patch(const ExactPatch& patch, std::uint32_t group, double opacity);
+    /// Round tubes about cubic Bezier curves; returns the geometry's number.
+    std::uint32_t add_tubes(const std::vector<std::array<Point, 4>>& pieces, double radius, double opacity);
+    std::uint32_t add_balls(const std::vector<Point>& centres, double radius, double opacity);
+    /// Builds the hierarchy; call once, when everything is added.
+    void commit();
+
+    /// Radius about the centre of everything that was added.
+    double radius() const;
+    /// Some geometry lets light through: use layers().
+    bool translucent() const;
+    /// Largest distance between a vertex as given and as stored.
+    double rounding() const;
+
+    /// Rays against patches so far, and how they ended.
+    struct Count {
+        std::uint64_t rays = 0, undecided = 0;
+    };
+    Count count() const;
+
+    /// The nearest hit of each of n <= packet rays; none, of none. Not of a scene that is translucent().
+    void intersect(const Ray* rays, int n, Hit* hits) const;
+    /// The nearest hit of one ray, whatever its opacity.
+    Hit first(const Ray& ray) const;
+    /// Every hit from the nearest to the first opaque one, in order. A tube or ball that lets light through counts
+    /// once.
+    void layers(const Ray& ray, std::vector<Hit>& hits) const;
+    /// How dark the shadow of a sheet is: as its opacity asks for, or, as in figures, lighter, so that sheets under sheets keep their colours.
+    enum class Shadows { light, physical };
+    /// The part of light that passes along each of n <= packet rays; 1 where `active` has no bit.
+    void transmittance(const Ray* rays, int n, std::uint32_t active, double* result, Shadows shadows = Shadows::light) const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace isoparm

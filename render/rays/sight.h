@@ -1,0 +1,24 @@
+// sight.h -- how much of a point the camera sees through what lies before it.
+#pragma once
+#include "picture/camera.h"
+#include "rays/traced_scene.h"
+
+namespace isoparm {
+
+class Sight {
+public:
+    Sight(const TracedScene& scene, const Camera& camera);
+    /// 1: nothing before it; 0: something opaque, or the point is behind the eye. What is less than `clear` scene units
+    /// before the point does not count: the tube or surface on which it lies.
+    double of(const Point& p, double clear = 0) const;
+    const Camera& camera() const { return camera_; }
+
+private:
+    /// Is it the surface in which p lies that the ray meets there? Within what the mesh may be off and a third of a pixel.
+    bool in_surface(const Hit& hit, const Ray& ray, const Point& p, double pixel) const;
+    const TracedScene& scene_;
+    const Camera& camera_;
+    double least_;  // the mesh may be that far before the surface
+};
+
+}  // namespace isoparm

@@ -1,0 +1,56 @@
+// traced_scene.h -- a scene turned into what rays meet: certified meshes, tubes and balls, each with its looks.
+#pragma once
+#include <array>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "picture/curvature_map.h"
+#include "rays/embree_scene.h"
+#include "scene/scene.h"
+
+namespace isoparm {
+
+/// One geometry of the EmbreeScene. Surfaces have a patch, and either a mesh that lies within `error` of it or, where rays meet the patch
+/// itself, none.
+struct Thing {
+    Color front, back;  // colours of the two sides, linear
+    double opacity = 1;
+    Material material;
+    double error = 0;         // scene units
+    bool inside_out = false;  // triangles wind about the back
+    bool flipped = false;     // without a mesh: its triangles would wind against S_u x S_v
+    Isolines isolines;
+    ColorScale scale;  // scale.by.what: none, or what the colour says
+    const Patch* patch = nullptr;
+    const Mesh* mesh = nullptr;
+    const MeshPart* part = nullptr;
+};
+
+/// A piece of a tube, or a ball: it lies within the convex hull of balls about the points.
+struct Solid {
+    std::array<Point, 4> points;
+    double radius = 0;
+};
+
+struct TracedScene {
+    std::deque<Mesh> meshes;
+    std::deque<ExactPatch> patches;
+    std::vector<Thing> things;  // by the number of the geometry
+    std::vector<Solid> solids;  // of all tubes and balls
+    std::unique_ptr<EmbreeScene> embree;
+    std::size_t triangles = 0;
+    double certified_error = 0;  // of all meshes, float32 included
+};
+
+/// Tessellates every surface that is drawn, once each, within `tolerance` (scene units). Refers to patches of `scene`,
+/// which must live as long. Throws what tessellate() throws, with the surface's name. `exact`: rays meet the patches themselves, and the
+/// meshes, coarse ones, only tell which side is the front.
+TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress, bool exact = false);
+/// Only some objects of the scene. `grid`: not 0 where patches are meshed by grids of so many cells each way (grid_mesh.h), of whose error nothing is proved: then
+/// certified_error is infinite.
+TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress,
+                               bool exact = false, int grid = 0);
+
+}  // namespace isoparm
