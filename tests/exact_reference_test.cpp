@@ -141,13 +141,19 @@ void roots(const Cell& cell, const Net& net, Number u0, Number v0, Number h, Num
 
 Point normal_to(const Point& d, const Point& other) { return normalized(cross(d, other)); }
 
+/// A scene's surfaces, opaque and without lines.
+Scene bare_surfaces(const std::string& name) {
+    Scene scene = load_scene(test::source_folder() + "/scenes/" + name + ".json");
+    std::erase_if(scene.objects, [](const SceneObject& o) { return o.kind != SceneObject::Kind::surface; });
+    for (SceneObject& o : scene.objects) o.boundary = false, o.isolines = {}, o.opacity = 1;
+    return scene;
+}
+
 struct Compared {
     int rays = 0, hits = 0, doubtful = 0, wrong = 0;
 };
 Compared compare(const std::string& name, int packets, unsigned seed) {
-    Scene scene = load_scene(test::source_folder() + "/scenes/" + name + ".json");
-    std::erase_if(scene.objects, [](const SceneObject& o) { return o.kind != SceneObject::Kind::surface; });
-    for (SceneObject& o : scene.objects) o.boundary = false, o.isolines = {}, o.opacity = 1;
+    const Scene scene = bare_surfaces(name);
     const TracedScene traced = build_traced_scene(scene, 1e-2, {}, true);
     const Bounds box = bounding_box(scene);
     const double size = box.diagonal();
@@ -215,9 +221,7 @@ double beyond(const Patch& patch, const Ray& ray, const Hit& hit, double part) {
 // Where surfaces are no polynomials, of hits is told by other ones that are near them: what is proved of those holds for the surface.
 TEST(ExactReference, SurfacesAreAsNearToRaysAsIsProved) {
     for (const char* name : {"side_vertex", "s004_side_vertex", "s004_gregory"}) {
-        Scene scene = load_scene(test::source_folder() + "/scenes/" + name + ".json");
-        std::erase_if(scene.objects, [](const SceneObject& o) { return o.kind != SceneObject::Kind::surface; });
-        for (SceneObject& o : scene.objects) o.boundary = false, o.isolines = {}, o.opacity = 1;
+        const Scene scene = bare_surfaces(name);
         const TracedScene traced = build_traced_scene(scene, 1e-2, {}, true);
         const Bounds box = bounding_box(scene);
         const double size = box.diagonal();

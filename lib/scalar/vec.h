@@ -1,6 +1,7 @@
 // scalar/vec.h -- points and vectors of space over any scalar.
 #pragma once
 #include <cmath>
+#include <numbers>
 
 namespace isoparm {
 
@@ -33,6 +34,8 @@ using Point = Vec3<double>;
 inline double length(const Point& a) { return std::sqrt(dot(a, a)); }
 inline double distance(const Point& a, const Point& b) { return length(a - b); }
 inline Point normalized(const Point& a) { return a / length(a); }
+/// The angle between two directions of any length, 0 to 180.
+inline double degrees_between(const Point& a, const Point& b) { return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi; }
 inline bool finite(const Point& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 inline bool operator==(const Point& a, const Point& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 

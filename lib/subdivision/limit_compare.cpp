@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "curves/bezier.h"
 #include "error.h"
@@ -54,7 +53,6 @@ std::optional<Point> normal(const Point& du, const Point& dv, double noise) {
     const Point n = cross(normalized(du), normalized(dv));
     return length(n) > 1e-6 ? std::optional(normalized(n)) : std::nullopt;
 }
-double degrees(const Point& a, const Point& b) { return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi; }
 
 /// First derivatives of a patch.
 struct Tangents {
@@ -101,7 +99,7 @@ FaceReport compare_face(const LimitSurface& limit, int face, int samples, double
             grow(report.deviation, d);
             grow(report.bilinear_coons, distance(bilinear.point(u, v), x.p));
             const auto n = normal(x.du, x.dv, noise), m = normal(s.du, s.dv, noise);
-            if (n && m) grow(report.normal_degrees, degrees(*n, *m));
+            if (n && m) grow(report.normal_degrees, degrees_between(*n, *m));
         }
     return report;
 }
@@ -127,7 +125,7 @@ void compare_edge(const LimitEdge& edge, const Patch& a, const Patch& b, int sam
         grow(report.c0, distance(x.p, y.p));
         grow(report.c1, length(x.inward + y.inward));  // what goes into one face comes out of the other
         const auto n = normal(x.along, x.inward, noise), m = normal(x.along, -y.inward, noise);
-        if (n && m) grow(report.g1_degrees, degrees(*n, *m));
+        if (n && m) grow(report.g1_degrees, degrees_between(*n, *m));
     }
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 
 #include "error.h"
 #include "subdivision/limit_cell.h"
@@ -25,7 +24,6 @@ void grow(LevelMeasures& all, const LevelMeasures& x) {
     grow(all.deviation, x.deviation), grow(all.normal_deviation, x.normal_deviation), grow(all.normal_degrees, x.normal_degrees);
     grow(all.g1_degrees, x.g1_degrees), grow(all.c1, x.c1);
 }
-double degrees(const Point& a, const Point& b) { return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi; }
 
 /// Calls f at the samples of a quad, or of a triangle.
 template <class F> void sample(Domain domain, int n, const F& f) {
@@ -43,7 +41,7 @@ LevelMeasures measure(const LimitCell& cell, const Patch& patch, int samples) {
         const Point off = y.p - x.p, n = cross(x.du, x.dv), k = cross(y.du, y.dv);
         grow(m.deviation, length(off));
         grow(m.normal_deviation, std::fabs(dot(off, normal)));
-        if (length(n) > 0 && length(k) > 0) grow(m.normal_degrees, degrees(n, k));  // NaN: a corner without derivatives
+        if (length(n) > 0 && length(k) > 0) grow(m.normal_degrees, degrees_between(n, k));  // NaN: a corner without derivatives
     });
     return m;
 }
@@ -60,7 +58,7 @@ LevelMeasures measure_edge(const Patch& a, const Patch& b, int samples) {
         const LimitFrame x = left(0, t), y = right(t, 0);
         const Point n = cross(x.du, x.dv), k = cross(y.du, y.dv);
         if (!(length(n) > 0) || !(length(k) > 0)) continue;
-        grow(m.g1_degrees, degrees(n, k));
+        grow(m.g1_degrees, degrees_between(n, k));
         grow(m.c1, length((x.du - lean * x.dv) + (y.dv - lean * y.du)));
     }
     return m;

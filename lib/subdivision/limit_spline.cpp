@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "check_size.h"
 #include "error.h"
@@ -83,7 +82,7 @@ SplineLevel compare(const Patch& patch, const Cage& cage, int m, int n, int samp
                     if (!(off <= rows[j].deviation)) rows[j].deviation = off;
                     const Point normal = cross(x.du, x.dv);
                     if (!y.normal || !y.du || !y.dv || !(length(cross(*y.du, *y.dv)) > 1e-9 * (dot(*y.du, *y.du) + dot(*y.dv, *y.dv)))) continue;  // a pole
-                    const double angle = std::atan2(length(cross(normal, *y.normal)), dot(normal, *y.normal)) * 180 / std::numbers::pi;
+                    const double angle = degrees_between(normal, *y.normal);
                     rows[j].degrees = std::max(rows[j].degrees, angle);
                 }
     });

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "diff/diff.h"
 #include "picture/palette.h"
@@ -57,7 +56,6 @@ void compare_colors(LimitView& v) {
     for (std::size_t i = 0; i < a.size(); i += 4) v.pictures.color.push_back(std::max({std::fabs(a[i] - b[i]), std::fabs(a[i + 1] - b[i + 1]), std::fabs(a[i + 2] - b[i + 2])}));
 }
 
-double degrees(const Point& a, const Point& b) { return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi; }
 
 void compare_normals(const Layers& layers, LimitView& v) {
     double sum = 0;
@@ -70,7 +68,7 @@ void compare_normals(const Layers& layers, LimitView& v) {
             v.pictures.degrees.push_back(kNaN);
             if (inside == 1 || inside == 2) ++v.silhouette_differing;
             if (inside != 3) continue;
-            const double angle = degrees({a[0], a[1], a[2]}, {b[0], b[1], b[2]});
+            const double angle = degrees_between({a[0], a[1], a[2]}, {b[0], b[1], b[2]});
             ++v.both, sum += angle;
             v.normal_max_degrees = std::max(v.normal_max_degrees, angle);
             v.pictures.degrees.back() = float(angle);

@@ -39,15 +39,15 @@ Selection select_patches(const Scene& scene, const std::optional<std::string>& s
 
 double absolute_tolerance(const Tolerance& t, const Scene& scene, const Bounds& box, const Options& options) {
     const double diagonal = finite_diagonal(scene, box);
-    if (t.unit != Tolerance::Unit::pixels) return absolute_tolerance(t, diagonal, options);
     double pixel = std::numeric_limits<double>::infinity();
-    for (const View& view : layout_of(scene, {}).views) pixel = std::min(pixel, finest_pixel(camera_of(view), box));
-    return t.value * pixel;
+    if (t.unit == Tolerance::Unit::pixels)
+        for (const View& view : layout_of(scene, {}).views) pixel = std::min(pixel, finest_pixel(camera_of(view), box));
+    return t.absolute(diagonal, pixel);
 }
 
 double absolute_tolerance(const Tolerance& t, double diagonal, const Options& options) {
     if (t.unit == Tolerance::Unit::pixels) options.fail("a tolerance in pixels needs a picture: give --tolerance in scene units or with rel");
-    return t.unit == Tolerance::Unit::relative ? t.value * diagonal : t.value;
+    return t.absolute(diagonal, 0);
 }
 
 }  // namespace isoparm

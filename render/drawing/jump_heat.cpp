@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "continuity.h"
 #include "topology.h"
@@ -37,7 +36,7 @@ double normal_curvature(const SurfacePoint& p, const Point& d, const Point& n) {
 double jump(const SurfacePoint& a, const SurfacePoint& b, const Point& along, JumpHeat::Of of) {
     if (!a.normal || !b.normal) return NAN;
     const Point m = *a.normal, n = dot(m, *b.normal) < 0 ? -*b.normal : *b.normal;
-    if (of == JumpHeat::Of::g1) return std::atan2(length(cross(m, n)), dot(m, n)) * 180 / std::numbers::pi;
+    if (of == JumpHeat::Of::g1) return degrees_between(m, n);
     return std::fabs(normal_curvature(a, cross(m, along), m) - normal_curvature(b, cross(n, along), n));
 }
 

@@ -37,8 +37,6 @@ std::string raster_path(const std::string& path) {
 }
 
 // ---- opacities ----------------------------------------------------------------------------------------------------
-double luminance(const Color& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
-
 /// Mean luminance of the raster at some points; what is transparent counts as white paper.
 double under(const std::vector<Vec2>& points, const DrawnPart& part, const Image& raster) {
     double sum = 0;

@@ -266,9 +266,11 @@ void put_shape(cairo_t* c, const Text& text) {
 
 namespace {
 
+void set_source(cairo_t* c, const Color& color, double opacity) { cairo_set_source_rgba(c, srgb_from_linear(color.x), srgb_from_linear(color.y), srgb_from_linear(color.z), opacity); }
+
 void draw(cairo_t* c, const Drawing& drawing) {
     for (const DrawingItem& item : drawing) {
-        cairo_set_source_rgba(c, srgb_from_linear(item.color.x), srgb_from_linear(item.color.y), srgb_from_linear(item.color.z), item.opacity);
+        set_source(c, item.color, item.opacity);
         std::visit([&](const auto& shape) { put_shape(c, shape); }, item.shape);
     }
 }
@@ -335,7 +337,7 @@ Target raster_surface(const Image& image) {
 
 void put_text(cairo_t* c, const DrawingItem& item, const Text& text, bool outlines) {
     if (text.halo > 0) {
-        cairo_set_source_rgba(c, srgb_from_linear(text.rim.x), srgb_from_linear(text.rim.y), srgb_from_linear(text.rim.z), printed_halo(item.opacity));
+        set_source(c, text.rim, printed_halo(item.opacity));
         cairo_new_path(c);
         set(c, text);
         cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
@@ -343,7 +345,7 @@ void put_text(cairo_t* c, const DrawingItem& item, const Text& text, bool outlin
         cairo_set_dash(c, nullptr, 0, 0);
         cairo_stroke(c);
     }
-    cairo_set_source_rgba(c, srgb_from_linear(item.color.x), srgb_from_linear(item.color.y), srgb_from_linear(item.color.z), item.opacity);
+    set_source(c, item.color, item.opacity);
     if (outlines) put_shape(c, text);
     else set(c, text, [](cairo_t* to, PangoLayoutLine* line, const TextRun&) { pango_cairo_show_layout_line(to, line); });
 }

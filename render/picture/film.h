@@ -48,6 +48,9 @@ struct PixelSum {
     int seen = 0;  // that were traced, at least as many
 };
 
+/// By which samples are compared.
+inline double brightness(const Color& c) { return (c.x + c.y + c.z) / 3; }
+
 /// What a film keeps of one pixel.
 struct FilmPixel {
     PixelSum& sum;

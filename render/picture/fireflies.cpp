@@ -13,7 +13,6 @@ constexpr double kStandsOut = 0.5;  // part of that brightness that one sample m
 constexpr double kShare = 0.05;     // of that brightness, to be added to a neighbour
 constexpr int kLeastRadius = 2, kMostRadius = kFireflyReach / 2;
 
-double brightness(const Color& c) { return (c.x + c.y + c.z) / 3; }
 double positive(const Color& c) { return std::max(0.0, brightness(c)); }
 
 /// How bright a pixel is, by the mean of its samples.

@@ -13,6 +13,8 @@ inline double linear_from_srgb(double s) { return s <= 0.04045 ? s / 12.92 : std
 inline double srgb_from_linear(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
 /// 0 to 255.
 inline int srgb_byte(double linear) { return static_cast<int>(std::lround(255 * std::clamp(srgb_from_linear(std::max(0.0, linear)), 0.0, 1.0))); }
+/// How bright linear light looks: the Y of CIE 1931, white is 1.
+inline double luminance(const Color& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 inline Color linear_from_srgb(double r, double g, double b) {
     return {linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b)};
 }
@@ -33,7 +35,7 @@ inline Color point_color() { return linear_from_srgb(0.76, 0.20, 0.16); }
 
 /// The other side of a surface: grey with a touch of the complement, so that one look tells the sides apart.
 inline Color back_color(const Color& front) {
-    const double grey = 0.2126 * front.x + 0.7152 * front.y + 0.0722 * front.z;
+    const double grey = luminance(front);
     const auto channel = [&](double c) { return std::max(0.0, 1.05 * (grey - 0.15 * (c - grey))); };
     return {channel(front.x), channel(front.y), channel(front.z)};
 }

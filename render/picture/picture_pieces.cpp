@@ -33,7 +33,7 @@ Image blank(int width, int height, const std::optional<Color>& background) {
 namespace {
 
 /// How bright it looks, from 0 to 1.
-double shown(const Color& c) { return srgb_from_linear(0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z); }
+double shown(const Color& c) { return srgb_from_linear(luminance(c)); }
 
 Color rim_of(const Color& letters, const Color& background) {
     if (std::fabs(shown(letters) - shown(background)) > 0.4) return background;

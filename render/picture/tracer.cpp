@@ -68,11 +68,10 @@ void Tracer::sample_block(int x, int y, Rgba* seen) const {
 }
 
 void Tracer::add(Rgba* seen, int n, bool counts, const FilmPixel& film) const {
-    const auto bright = [](const Color& c) { return c.x + c.y + c.z; };
     PixelSum& sum = film.sum;
     for (int i = 0; i < n; ++i) {
         if (counts) sum.color += seen[i].color, sum.alpha += seen[i].alpha;
-        if (counts && film.brightest && bright(seen[i].color) > bright(*film.brightest)) *film.brightest = seen[i].color;
+        if (counts && film.brightest && brightness(seen[i].color) > brightness(*film.brightest)) *film.brightest = seen[i].color;
         if (!film.spread) continue;
         seen[i].add_behind(background_.value_or(Color{1, 1, 1}), 1);
         film.spread->add(seen[i].color);

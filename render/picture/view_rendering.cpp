@@ -17,9 +17,7 @@ namespace {
 double in_scene_units(const Tolerance& t, const Camera& camera, const Bounds& box) {
     const double size =
         box.diagonal() > 0 ? box.diagonal() : 1;  // a single ball: nothing to tessellate, but tubes to round
-    const double absolute = t.unit == Tolerance::Unit::absolute   ? t.value
-                            : t.unit == Tolerance::Unit::relative ? t.value * size
-                                                                  : t.value * finest_pixel(camera, box);
+    const double absolute = t.absolute(size, finest_pixel(camera, box));
     if (!(absolute > 0) || !std::isfinite(absolute))
         throw_input("the tolerance comes to " + to_text(absolute) + " scene units, expected more than 0");
     return absolute;

@@ -171,6 +171,8 @@ struct ImageSettings {
 struct Tolerance {
     enum class Unit { absolute, relative, pixels } unit = Unit::relative;
     double value = 1e-4;  // relative: of the bounding-box diagonal
+    /// In scene units, where these are a diagonal and a pixel.
+    double absolute(double diagonal, double pixel) const { return unit == Unit::absolute ? value : value * (unit == Unit::relative ? diagonal : pixel); }
 };
 
 /// An enlarged part of a picture or panel, or another view of its objects, in a frame that lies over it. Lengths are parts of its
