@@ -266,6 +266,19 @@ TEST(Ground, DarkensABackgroundAndAddsNoLight) {
     }
     EXPECT_GT(shadows, 5);
 }
+TEST(Ground, IsHiddenByWhatLiesInIt) {
+    // A square that is the lowest thing there is, far from the origin and aslant to its float coordinates: no speck of ground shows through.
+    const TemporaryFolder folder;
+    write_all(folder / "s.json", R"({"isoparm": 1, "surfaces": {"s": {"type": "bezier", "points": [[[96.7,7.1,4.3],[97.3,9.2,4.3]],[[98.8,6.5,4.3],[99.4,8.6,4.3]]]}},
+        "objects": [{"surface": "s", "boundary": false}], "camera": {"eye": [95,2,20], "target": [98.05,7.85,4.3], "fov": 3},
+        "image": {"width": 64, "height": 48, "samples": 4, "background": "transparent"}, "ground": true})");
+    for (const bool exact : {false, true}) {
+        RenderOptions options;
+        options.exact = exact;
+        const Image image = render(load_scene(folder / "s.json"), options).image;
+        for (std::size_t i = 3; i < image.pixels.size(); i += 4) ASSERT_EQ(image.pixels[i], 1.0f) << i << " " << exact;
+    }
+}
 TEST(Ground, LiesUnderTheLowestPoint) {
     const TemporaryFolder folder;
     const auto picture = [&](const std::string& ground) {

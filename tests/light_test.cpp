@@ -55,6 +55,17 @@ TEST(Light, MaterialsGiveBackNoMoreThanTheyGet) {
     EXPECT_NEAR(reflected(Bsdf({Material::Kind::diffuse, 0, 1.5, false}, {0.2, 0.5, 0.9}, false), at_angle(40)).y, 0.5, 1e-12);
     EXPECT_NEAR(reflected(Bsdf({Material::Kind::plastic, 0, 1.5, false}, {1, 1, 1}, false), at_angle(40)).x, 1, 0.005);
 }
+TEST(Light, PlasticHasItsColour) {
+    // A smooth coat reflects f(out) of even light; of what enters, as much comes out again as the colour says.
+    for (const double ior : {1.3, 1.5, 2.0})
+        for (const double degrees : {0.0, 40.0, 75.0}) {
+            const Color seen = reflected(Bsdf({Material::Kind::plastic, 0, ior, false}, {0.8, 0.3, 0.1}, false), at_angle(degrees));
+            const double f = fresnel(std::cos(degrees * kPi / 180), ior);
+            EXPECT_NEAR(seen.x, f + (1 - f) * 0.8, 0.005) << ior << " " << degrees;
+            EXPECT_NEAR(seen.y, f + (1 - f) * 0.3, 0.005) << ior << " " << degrees;
+            EXPECT_NEAR(seen.z, f + (1 - f) * 0.1, 0.005) << ior << " " << degrees;
+        }
+}
 TEST(Light, RoughMetalsDarkenAsTheirFacetsDo) {
     // Light that meets several facets is coloured several times: rough metals are more saturated, and a white one loses nothing.
     const Color smooth = reflected(Bsdf({Material::Kind::metal, 0, 1.5, false}, {1, 0.5, 0.25}, false), at_angle(20)), rough = reflected(Bsdf({Material::Kind::metal, 1, 1.5, false}, {1, 0.5, 0.25}, false), at_angle(20));

@@ -50,7 +50,7 @@ Bsdf::Bsdf(const Material& material, const Color& color, bool inside)
     if (material.kind == Material::Kind::plastic) {
         const double mean = mean_fresnel(material.ior), coat = mean + 0.1, base = 0.9 * max_of(color);
         coat_share_ = coat / (coat + base);
-        kept_ = 1 - (1 - mean) / (material.ior * material.ior);
+        entering_ = 1 - mean;
     }
 }
 
@@ -78,11 +78,10 @@ Color Bsdf::between_facets(const Point& out, const Point& in) const {
 Color Bsdf::base(const Point& out, const Point& in) const {
     if (material_.kind == Material::Kind::metal) return {};
     if (material_.kind == Material::Kind::diffuse) return (in.z / kPi) * color_;
-    // What enters through the coat, is scattered below it, partly thrown back by the coat from below, and leaves.
-    const double ior = material_.ior;
-    const double through = (1 - fresnel(out.z, ior)) * (1 - fresnel(in.z, ior)) / (ior * ior);
-    const auto one = [&](double c) { return c / (1 - c * kept_); };
-    return (through * in.z / kPi) * Color{one(color_.x), one(color_.y), one(color_.z)};
+    // What enters through the coat, is scattered below it, partly thrown back by the coat from below, and leaves: (1 - f(out)) (1 - f(in)) / n^2 c / (1 - k c) of a base of
+    // albedo c under a coat that throws back k = 1 - (1 - mean) / n^2. The base is such that of what enters the colour comes out again: c / (1 - k c) = colour / (1 - k).
+    const double through = (1 - fresnel(out.z, material_.ior)) * (1 - fresnel(in.z, material_.ior)) / entering_;
+    return (through * in.z / kPi) * color_;
 }
 
 Color Bsdf::value(const Point& out, const Point& in) const {

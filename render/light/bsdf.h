@@ -42,7 +42,7 @@ private:
     bool inside_;
     double alpha_;           // width of the distribution of micro-facets
     double coat_share_ = 0;  // of samples
-    double kept_ = 0;        // of light that is scattered below a coat, by the coat
+    double entering_ = 0;    // of even light, through a coat
 };
 
 /// What a smooth dielectric of relative index `ior` (inside over outside) reflects of unpolarised light; cosine on the side it comes from.

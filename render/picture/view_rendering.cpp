@@ -28,12 +28,14 @@ std::unique_ptr<const Lighting> lighting_of(const Scene& scene, const Camera& ca
     return std::make_unique<FigureLighting>(camera, ground);
 }
 
-/// With its height: under everything that is drawn, when the scene does not say.
-std::optional<Ground> ground_of(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced) {
-    std::optional<Ground> ground = scene.ground;
-    if (!ground || ground->height) return ground;
+/// So far beneath its height, in radii of the scene, the ground is met: what lies in it hides it.
+constexpr double kBeneath = 1e-5;
+
+/// The height of the ground: under everything that is drawn, when the scene does not say.
+std::optional<double> height_of(const Ground& ground, const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced) {
+    if (ground.height) return ground.height;
     double low = std::numeric_limits<double>::infinity();
-    const auto add = [&](const Point& p, double radius) { low = std::min(low, dot(p, ground->up) - radius); };
+    const auto add = [&](const Point& p, double radius) { low = std::min(low, dot(p, ground.up) - radius); };
     for (const Mesh& mesh : traced.meshes)
         for (const Point& p : mesh.positions) add(p, 0);
     const double size = bounding_box(scene).diagonal();
@@ -44,7 +46,14 @@ std::optional<Ground> ground_of(const Scene& scene, const std::vector<SceneObjec
             for (const Point& p : drawn_points(scene, {o})) add(p, radius);
     }
     if (!std::isfinite(low)) return {};
-    ground->height = low;
+    return low;
+}
+std::optional<Ground> ground_of(const Scene& scene, const std::vector<SceneObject>& objects, const TracedScene& traced) {
+    if (!scene.ground) return {};
+    const auto height = height_of(*scene.ground, scene, objects, traced);
+    if (!height) return {};
+    std::optional<Ground> ground = scene.ground;
+    ground->height = *height - kBeneath * traced.embree->radius();
     return ground;
 }
 
