@@ -37,7 +37,7 @@ Selection select_patches(const Scene& scene, const std::optional<std::string>& s
     return all;
 }
 
-double absolute_tolerance(const Tolerance& t, const Scene& scene, const Bounds& box, const Options& options) {
+double absolute_tolerance(const Tolerance& t, const Scene& scene, const Bounds& box) {
     const double diagonal = finite_diagonal(scene, box);
     double pixel = std::numeric_limits<double>::infinity();
     if (t.unit == Tolerance::Unit::pixels)

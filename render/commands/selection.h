@@ -19,7 +19,7 @@ Selection select_patches(const Scene& scene, const Options& options);
 Selection select_patches(const Scene& scene, const std::optional<std::string>& surface);
 
 /// In scene units: of the diagonal of `box`, which holds what it is for; of the finest pixel there, in any view of the picture that the scene describes.
-double absolute_tolerance(const Tolerance& t, const Scene& scene, const Bounds& box, const Options& options);
+double absolute_tolerance(const Tolerance& t, const Scene& scene, const Bounds& box);
 /// In scene units; `diagonal` is what relative ones are relative to. Throws Error(usage) for pixels.
 double absolute_tolerance(const Tolerance& t, double diagonal, const Options& options);
 

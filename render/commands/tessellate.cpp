@@ -213,7 +213,7 @@ int run(const std::vector<std::string>& arguments) {
     check_output(output, scene, options);
     const Selection selection = select_patches(scene, options);
     const Bounds box = bounding_box(selection.patches);
-    const double tolerance = absolute_tolerance(given ? *given : scene.tolerance, scene, box, options);
+    const double tolerance = absolute_tolerance(given ? *given : scene.tolerance, scene, box);
     if (!(tolerance > 0)) throw_input(scene.place + ": found surfaces of size 0, expected some that a relative tolerance can be taken of");
     const bool glb = extension_of(output) == ".glb", float32 = glb || extension_of(output) == ".stl";
     const double reserved = float32 ? float_rounding_bound(box) : 0;

@@ -196,7 +196,7 @@ int run(const std::vector<std::string>& arguments) {
     r.welded = r.file.welded + (options.has("--weld") ? weld_equal_points(r.file.mesh) : 0);
     const Scene scene = options.scene_at(r.scene);
     r.selection = select_patches(scene, options);
-    if (tolerance) how.limit = absolute_tolerance(*tolerance, scene, bounding_box(r.selection.patches), options);
+    if (tolerance) how.limit = absolute_tolerance(*tolerance, scene, bounding_box(r.selection.patches));
     r.size = size_of(r.file.mesh);
     r.junction_distance = junctions ? *junctions : 1e-6 * r.size;
     {

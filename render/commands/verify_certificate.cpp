@@ -127,7 +127,7 @@ int verify_certificate(const Options& options) {
         r.check.faults.push_back(r.scene + " is not the scene that the certificate is of, " + r.file.scene + " of sha256 " + r.file.sha256);
     } else {
         const auto [scene, selection] = named_by(r, options);
-        if (tolerance) r.limit = absolute_tolerance(*tolerance, scene, bounding_box(selection.patches), options);
+        if (tolerance) r.limit = absolute_tolerance(*tolerance, scene, bounding_box(selection.patches));
         ProgressBar bar("checking", options.quiet());
         r.check = check_certificate(selection.patches, c, 5000, std::ref(bar));
         for (const std::string& fault : claim_faults(r.file, selection)) r.check.faults.push_back(fault);

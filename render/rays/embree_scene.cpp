@@ -99,6 +99,7 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
         hits.push_back(h);
     }
     s.tidy(hits);
+    s.order_in_planes(hits, ray.direction);
     for (Hit& h : hits) h.distance += start;
 }
 

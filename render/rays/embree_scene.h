@@ -29,6 +29,8 @@ struct Hit {
 class EmbreeScene {
 public:
     static constexpr int packet = 16;  // rays a call
+    /// The opacity of what is opaque but shares its plane with something else: rays then look behind it too, and what was added last lies over the others.
+    static constexpr double shared_plane = 1 - 0x1p-24;
 
     explicit EmbreeScene(const Point& centre);
     ~EmbreeScene();

@@ -142,6 +142,23 @@ struct EmbreeScene::State {
         return !ga.solid && !gb.solid && ga.mesh == gb.mesh && b.distance - a.distance < 1e-6 * radius &&
                near_edge(a) && near_edge(b);
     }
+    /// At one place, but for rounding, in a plane that both share?
+    bool in_one_plane(const Hit& a, const Hit& b, const Point& along) const {
+        if (!geometries[a.geometry].in_shared_plane() || !geometries[b.geometry].in_shared_plane()) return false;
+        const double size = length(a.normal), across = size > 0 ? std::fabs(dot(a.normal, along)) / size : 1;
+        return std::fabs(a.distance - b.distance) * across < 1e-6 * radius;
+    }
+    /// What was added last lies over what shares its plane, and hides what is behind.
+    void order_in_planes(std::vector<Hit>& hits, const Point& along) const {
+        for (std::size_t i = 0; i < hits.size(); ++i) {
+            if (!geometries[hits[i].geometry].in_shared_plane()) continue;
+            std::size_t over = i;
+            for (std::size_t k = i + 1; k < hits.size(); ++k)
+                if (in_one_plane(hits[i], hits[k], along) && hits[k].geometry > hits[over].geometry) over = k;
+            std::swap(hits[i], hits[over]);
+            hits.resize(i + 1);
+        }
+    }
     /// In order, each once: tubes and balls however often a ray passes their skin, others where leaves or triangles meet.
     void tidy(std::vector<Hit>& hits) const {
         std::sort(hits.begin(), hits.end(), nearer);

@@ -8,6 +8,7 @@
 #include "error.h"
 #include "grid_mesh.h"
 #include "picture/palette.h"
+#include "rays/shared_planes.h"
 #include "rays/tubes.h"
 #include "tessellate.h"
 
@@ -57,6 +58,7 @@ public:
     }
 
     TracedScene run() {
+        shared_planes_ = shared_planes(scene_, objects_, size_);
         for (done_ = 0; done_ < objects_.size(); ++done_) {
             report(0, objects_.size());
             add(objects_[done_], objects_.size());
@@ -110,7 +112,7 @@ private:
         thing.mesh = &mesh;
         thing.inside_out = inside_out(mesh);
         if (o.opacity > 0) {
-            if (!exact_) result_.embree->add_mesh(mesh, o.opacity);
+            if (!exact_) result_.embree->add_mesh(mesh, opacity_of(thing));
             for (const MeshPart& part : mesh.parts) {
                 thing.part = &part;
                 thing.patch = &surface.patches[part.member].patch;
@@ -123,6 +125,9 @@ private:
         if (o.boundary && !(o.line.width > 0)) add_boundary(o, surface);
     }
 
+    /// For rays; of the object that is being added.
+    double opacity_of(const Thing& thing) const { return thing.opacity == 1 && shared_planes_[done_] ? EmbreeScene::shared_plane : thing.opacity; }
+
     void add_patch(Thing& thing, const Surface& surface) {
         const ExactPatch*& known = exact_of_[thing.patch];
         try {
@@ -130,7 +135,7 @@ private:
         } catch (const Error& e) {
             throw Error(e.kind(), "surface \"" + surface.name + "\": " + e.what());
         }
-        result_.embree->add_patch(*known, group_, thing.opacity);
+        result_.embree->add_patch(*known, group_, opacity_of(thing));
         thing.flipped = thing.part->flipped;
         thing.error = 0;
         thing.mesh = nullptr;
@@ -245,6 +250,7 @@ private:
     std::map<const Surface*, std::vector<double>> errors_;  // of grids
     std::map<const Patch*, const ExactPatch*> exact_of_;
     std::size_t done_ = 0, surfaces_ = 0;
+    std::vector<char> shared_planes_;
 };
 
 }  // namespace
