@@ -1,6 +1,8 @@
 // The real program from its command line: results, exit codes, files.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstring>
 #include <sstream>
 
 #include "expect_program.h"
@@ -250,6 +252,46 @@ TEST(Commands, FramesAreThePicturesOfTheirParameters) {
     refused("-o f%d.png --frames 3 --animate h=0", "expected PARAMETER or PARAMETER=FROM:TO");
     refused("-o f%d.png --frames 3 --animate h=0:2", "expected values from -1 to 1");
     refused("-o f%d.png --frames 3 --animate h --animate h", "given twice");
+}
+// What other programs read: the chunk oFFs of PNG, data and display window of OpenEXR.
+TEST(Commands, CropsSayWhereTheyLie) {
+    const TemporaryFolder t;
+    for (const std::string kind : {"png", "exr"}) {
+        const std::string whole = t / ("whole." + kind), part = t / ("part." + kind), again = t / ("again." + kind);
+        for (const auto& [file, crop] : {std::pair(whole, ""), {part, " --crop 10,20,43,41"}, {again, " --crop 0,0,60,45"}})
+            ASSERT_EQ(run("render " + scene("coons") + " --size 60x45 --samples 1 --tolerance 0.1 -o '" + file + "'" + crop).code, 0);
+        const std::string bytes = read_all(part), other = read_all(whole);
+        EXPECT_NE(bytes.find("10,20,43,41"), std::string::npos);
+        EXPECT_NE(bytes.find("60x45"), std::string::npos);
+        if (kind == "png") {
+            EXPECT_NE(bytes.find(std::string("\0\0\0\x09oFFs\0\0\0\x0a\0\0\0\x14\0", 17)), std::string::npos);
+            EXPECT_EQ(other.find("oFFs"), std::string::npos);
+            EXPECT_EQ(read_all(again).find("oFFs"), std::string::npos) << "at the corner there is nothing to say";
+        } else {
+            const auto box = [](const std::string& file, const std::string& name) {  // least x, y, largest x, y
+                std::array<int, 4> b{};
+                const auto at = file.find(name + std::string("\0box2i\0\x10\0\0\0", 11));
+                if (at != std::string::npos) std::memcpy(b.data(), file.data() + at + name.size() + 11, sizeof b);
+                return b;
+            };
+            EXPECT_EQ(box(bytes, "dataWindow"), (std::array{10, 20, 42, 40}));
+            EXPECT_EQ(box(bytes, "displayWindow"), (std::array{0, 0, 59, 44}));
+            EXPECT_EQ(box(other, "dataWindow"), (std::array{0, 0, 59, 44}));
+        }
+        EXPECT_EQ(run("diff '" + part + "' '" + part + "'").code, 0) << "and they are read";
+        EXPECT_EQ(run("diff '" + whole + "' '" + part + "'").code, 3);
+    }
+    ASSERT_EQ(run("render " + scene("coons") + " --size 60x45 --samples 1 --tolerance 0.1 --aov Z -o '" + (t / "z.exr") + "' --crop 10,20,43,41").code, 0) << "with further channels too";
+    EXPECT_NE(read_all(t / "z.exr").find(std::string("dataWindow\0box2i\0\x10\0\0\0\x0a\0\0\0\x14\0\0\0", 29)), std::string::npos);
+}
+TEST(Commands, ScenesWithNothingToDrawAreToldOf) {
+    const TemporaryFolder t;
+    write_all(t / "empty.json", "{ \"isoparm\": 1 }");
+    write_all(t / "point.json", R"({ "isoparm": 1, "objects": [ { "point": [0,0,0] } ] })");
+    const Outcome empty = run("render empty.json --size 8x8 --quiet -o e.png", t.path()), point = run("render point.json --size 8x8 --samples 1 --quiet -o p.png", t.path());
+    EXPECT_EQ(empty.code, 0);
+    EXPECT_NE(empty.err.find("warning: e.png: there is nothing to draw in \"empty.json\""), std::string::npos) << empty.err;
+    EXPECT_EQ(point.err, "");
 }
 TEST(Commands, WithoutFontsLabelsAreAnErrorAndPicturesAreNot) {
     const TemporaryFolder t;

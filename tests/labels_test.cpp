@@ -1,6 +1,7 @@
 // labels_test.cpp -- texts, where labels stand, and how they are painted.
 #include "drawing/labels.h"
 
+#include <map>
 #include <numbers>
 
 #include "picture/camera.h"
@@ -62,8 +63,50 @@ TEST(MathText, TexGetsFormulasWhole) {
 }
 TEST(MathText, FractionsStandInOneLineWithTheBracketsThatTheyNeed) {
     for (const auto& [text, shown] : {std::pair<std::string, std::string>{"\\frac{1}{2}", "1/2"}, {"\\frac12", "1/2"}, {"\\frac{10}{x_{i+1}}", "10/xi+1"}, {"\\frac{u+v}{2\\pi}", "(u+v)/(2π)"}, {"\\frac{ab}{c}", "ab/c"},
-                                      {"\\frac{\\partial S}{\\partial u}", "∂\u2009S/∂\u2009u"}, {"\\frac{\\frac{1}{2}}{\\hat{x}}", "(1/2)/x\u0302"}, {"\\sqrt{2}", "√2"}, {"\\sqrt{x^2+1}", "√(x2+1)"}, {"\\sqrt{ab}", "√(ab)"}})
+                                      {"\\frac{\\partial S}{\\partial u}", "∂\u2009S/∂\u2009u"}, {"\\frac{\\frac{1}{2}}{\\hat{x}}", "(1/2)/x\u0302"}, {"\\frac{\\sqrt{2}}{2}", "√2/2"}})
         EXPECT_EQ(plain(parse_math_text(text)), shown) << text;
+}
+// The TeXbook, chapter 18: 5/18 em around relations, 4/18 around binary signs, 3/18 behind commas; none in scripts.
+TEST(MathText, SignsHaveTheSpaceThatTexGivesThem) {
+    const double thin = 3.0 / 18, medium = 4.0 / 18, thick = 5.0 / 18;
+    const auto space = [](const std::string& text) {
+        double all = 0;
+        for (const TextRun& r : parse_math_text(text)) all += r.before;
+        return all;
+    };
+    for (const auto& [text, expected] : {std::pair<std::string, double>{"a=b", 2 * thick}, {"a+b", 2 * medium}, {"a-b", 2 * medium}, {"r(u,v)", thin}, {"a \\to b", 2 * (thick - thin)}, {"a\\le b", 2 * thick - thin},
+                                         {"P_{i-1}", 0}, {"x^{a=b}", 0}, {"-1", 0}, {"x=-1", 2 * thick}, {"(-1)", 0}, {"a+", 0}, {"(a+)", 0}, {"2\\sin\\theta", 2 * thin}, {"\\sin(x)", 0}, {"$a=$ and $=b$", 2 * thick},
+                                         {"a=\\text{const}", 2 * thick}, {"\\sqrt{a+b}=c", 2 * medium + 2 * thick}, {"x_i=y_j^2+1", 2 * thick + 2 * medium}, {"a = b", 2 * (thick - thin)}})
+        EXPECT_NEAR(space(text), expected, 1e-12) << text;
+    EXPECT_EQ(space("one, two = three"), 0) << "prose";
+    // And it is there on the picture: as wide as the letters by themselves and the space.
+    const auto wide = [](const std::string& text) { return text_box(parse_math_text(text), 100).advance; };
+    EXPECT_NEAR(wide("1=2"), wide("1") + wide("{=}") + wide("2") + 200 * thick, 1e-6);
+}
+TEST(MathText, RootsHaveABarOverAllThatTheyAreOf) {
+    for (const auto& [text, tex] : {std::pair<std::string, std::string>{"\\sqrt{2}", "$\\sqrt{2}$"}, {"1+\\sqrt{x_1^2+y^{2}}-a", "$1+\\sqrt{x_{1}^{2}+y^{2}}-a$"}, {"\\sqrt{1+\\sqrt{x}}^2", "$\\sqrt{1+\\sqrt{x}}^{2}$"}, {"e^{\\sqrt{x}}", "$e^{\\sqrt{x}}$"}})
+        EXPECT_EQ(tex_of(parse_math_text(text)), tex) << text;
+    for (const std::string inside : {"2", "x^2+1", "\\hat{X}", "H_i^{(3)}"}) {
+        const MathText text = parse_math_text("\\sqrt{" + inside + "}");
+        EXPECT_EQ(text.at(0).covers, text.size() - 1) << inside;
+        const PlacedText placed = placed_text(text, 100);
+        ASSERT_EQ(placed.bars.size(), 1u) << inside;
+        const TextBox bar = placed.bars[0], all = text_box(text, 100), own = text_box(parse_math_text(inside), 100);
+        EXPECT_LE(bar.left, placed.runs.at(1).x + 2) << inside;
+        EXPECT_GE(bar.right, placed.runs.at(1).x + own.right) << inside;
+        EXPECT_LT(bar.bottom, own.top) << inside << ": above all";
+        EXPECT_GT(bar.bottom, bar.top + 2);
+        EXPECT_GE(bar.top, all.top - 1e-9);
+        EXPECT_EQ(bar.right, all.right);
+        // It is painted, without gaps or holes where it overlaps with the sign.
+        const Coverage c = coverage(Text{{50, 200}, 100, text}, 0, 500, 300);
+        const int row = static_cast<int>(200 + 0.5 * (bar.top + bar.bottom)) - c.y0;
+        for (int x = static_cast<int>(50 + bar.left + 1); x < 50 + bar.right - 1; ++x) EXPECT_GT(c.part.at(static_cast<std::size_t>(row * c.width + x - c.x0)), 128) << inside << ' ' << x;
+    }
+    const PlacedText nested = placed_text(parse_math_text("\\sqrt{1+\\sqrt{x}}"), 100);
+    ASSERT_EQ(nested.bars.size(), 2u);
+    EXPECT_LT(nested.bars[1].bottom, nested.bars[0].top) << "the outer one is above the inner";
+    EXPECT_GT(nested.runs.at(0).scale, 1);
 }
 TEST(MathText, AccentsAlphabetsAndSigns) {
     for (const auto& [text, shown] : {std::pair<std::string, std::string>{"\\hat{n}", "n\u0302"}, {"\\vec n_1", "n\u20d71"}, {"\\overline{AB}", "A\u0305B\u0305"}, {"\\mathbb{R}^3", "ℝ3"}, {"\\mathcal{AB}", "𝒜ℬ"},
@@ -191,6 +234,71 @@ TEST(Labels, FarFromWhatTheyNameHaveLeaders) {
     EXPECT_EQ(placed(crowd).size(), 1u) << "not wanted";
     label.leader = true;
     EXPECT_EQ(placed({}).size(), 2u) << "wanted in any case";
+}
+// What leaves no room but 1.2 ems away has the label there, 1.8 letter heights: a leader. Nearer ones need none, and a curve that passes nearby is near enough.
+TEST(Labels, MoreThanOneAndAHalfLetterHeightsAwayHaveLeadersToo) {
+    Label label;
+    label.text = parse_math_text("A");
+    const double size = 20;
+    const auto placed = [&](double crowd, const std::vector<Anchor>& anchors) {
+        std::vector<Obstacle> obstacles;  // a disc about the anchor
+        for (double x = -crowd; x <= crowd; x += 2)
+            for (double y = -crowd; y <= crowd; y += 2)
+                if (std::hypot(x, y) <= crowd) obstacles.push_back({{200 + x, 200 + y}, 1});
+        Drawing d;
+        place_labels({{&label, -1, anchors, size, {0, 0, 0}}}, obstacles, 400, 400, d);
+        return d;
+    };
+    const auto gap_of = [&](const DrawingItem& item) {
+        const Text& t = std::get<Text>(item.shape);
+        const TextBox box = text_box(t.text, t.size);
+        return std::hypot(std::max({t.at.x + box.left - 200, 200 - t.at.x - box.right, 0.0}), std::max({t.at.y + box.top - 200, 200 - t.at.y - box.bottom, 0.0}));
+    };
+    const Drawing near = placed(0.4 * size, {{{200, 200}, 1, {}, 0}}), away = placed(0.95 * size, {{{200, 200}, 1, {}, 0}});
+    ASSERT_EQ(near.size(), 1u);
+    EXPECT_LT(gap_of(near[0]), size);
+    ASSERT_EQ(away.size(), 2u);
+    EXPECT_GT(gap_of(away[1]), size);
+    EXPECT_LT(gap_of(away[1]), 1.5 * size) << "no farther than it has to";
+    label.leader = false;
+    EXPECT_EQ(placed(0.95 * size, {{{200, 200}, 1, {}, 0}}).size(), 1u);
+}
+// A point, a ball and a line over the numbers of a diagram: they stand beside them.
+TEST(Overlay, NumbersOfAxesKeepOffWhatIsDrawn) {
+    const auto numbers = [](const std::string& objects) {
+        const Scene scene = scene_from(R"({ "isoparm": 1, "curves": { "line": { "type": "line", "points": [[0.02,-0.36,0],[4,-0.36,0]] } },
+            "objects": [ { "axes": { "x": [0, 4], "y": [0, 3] }, "line": 1.5 })" + objects + R"(], "camera": { "eye": [2,1.2,9], "target": [2,1.2,0], "up": [0,1,0], "orthographic": 4.4 }, "image": { "width": 600, "height": 450 } })");
+        RenderOptions options;
+        options.vectors = true, options.samples = 1;
+        std::map<std::string, std::array<double, 4>> boxes;
+        for (const DrawingItem& item : render(scene, options).drawn.at(0).drawing)
+            if (const auto* t = std::get_if<Text>(&item.shape)) {
+                const TextBox b = text_box(t->text, t->size);
+                boxes[plain(t->text)] = {t->at.x + b.left, t->at.y + b.top, t->at.x + b.right, t->at.y + b.bottom};
+            }
+        return std::pair(boxes, make_camera(scene.camera, {}, 600, 450));
+    };
+    const auto [free, camera] = numbers("");
+    for (const char* n : {"0", "1", "2", "3", "4"}) ASSERT_TRUE(free.contains(n)) << n;
+    const Vec2 two = camera.project({2, 0, 0});
+    EXPECT_NEAR(0.5 * (free.at("2")[0] + free.at("2")[2]), two.x, 1) << "below its tick, where nothing is in the way";
+    EXPECT_GT(free.at("2")[1], two.y);
+    const double radius = 0.22;  // over the number of 2
+    const Vec2 middle{0.5 * (free.at("2")[0] + free.at("2")[2]), 0.5 * (free.at("2")[1] + free.at("2")[3])};
+    const Point there{2, (two.y - middle.y) * camera.pixel_size(9), 0};
+    for (const std::string ball : {R"("radius": 0.22)", R"("dot": 45)"}) {
+        const auto [beside, same] = numbers(", { \"point\": [" + std::to_string(there.x) + "," + std::to_string(there.y) + ",0], " + ball + " }");
+        const auto& b = beside.at("2");
+        const double clear = std::hypot(std::max({b[0] - middle.x, 0.0, middle.x - b[2]}), std::max({b[1] - middle.y, 0.0, middle.y - b[3]}));
+        EXPECT_GT(clear, 0.97 * radius / camera.pixel_size(9)) << ball;
+        EXPECT_EQ(beside.at("4"), free.at("4")) << "the others stay";
+    }
+    const auto [off, same] = numbers(R"(, { "curve": "line", "line": 3 })");
+    const double y = camera.project({2, -0.36, 0}).y;
+    for (const char* n : {"1", "2", "3", "4"}) {
+        EXPECT_TRUE(free.at(n)[1] < y && free.at(n)[3] > y) << n << " would be crossed";
+        EXPECT_TRUE(off.at(n)[1] > y + 1.5 || off.at(n)[3] < y - 1.5) << n;
+    }
 }
 TEST(Labels, WithLeadersAreNotFaintButTheirLinesDashed) {
     Label label;

@@ -157,6 +157,19 @@ TEST(Scene, ObjectsCameraImageAndToleranceAreRead) {
     EXPECT_GE(box.high.z, 3);
 }
 
+// CSS Color Module Level 4, section 6.1: the basic names.
+TEST(Scene, ColoursHaveTheNamesOfCss) {
+    const auto color = [](const std::string& name) { return *load("{ \"isoparm\": 1, \"objects\": [ { \"point\": [0,0,0], \"color\": \"" + name + "\" } ] }").objects.at(0).color; };
+    for (const auto& [name, hex] : {std::pair("aqua", "#00ffff"), {"black", "#000000"}, {"blue", "#0000ff"}, {"fuchsia", "#ff00ff"}, {"gray", "#808080"}, {"green", "#008000"}, {"lime", "#00ff00"}, {"maroon", "#800000"}, {"navy", "#000080"},
+                                    {"olive", "#808000"}, {"orange", "#ffa500"}, {"purple", "#800080"}, {"red", "#f00"}, {"silver", "#c0c0c0"}, {"teal", "#008080"}, {"white", "#fff"}, {"yellow", "#ff0"}})
+        EXPECT_EQ(color(name), color(hex)) << name;
+    try {
+        color("navi");
+        ADD_FAILURE() << "read";
+    } catch (const Error& e) {
+        EXPECT_NE(std::string(e.what()).find("did you mean \"navy\"?"), std::string::npos) << e.what();
+    }
+}
 TEST(Scene, WithoutObjectsWhatNothingElseIsMadeOfIsDrawn) {
     const Scene s = load(R"json({ "isoparm": 1, "surfaces": { "a": { "type": "triangle", "points": [[0,0,0], [1,0,0], [0,1,0]] },
         "b": { "type": "transform", "surface": "a", "mirror": [0,1,0] }, "ab": { "type": "composite", "members": ["a", "b"] } } })json");

@@ -10,6 +10,7 @@
 #include "commands/picture_key.h"
 #include "commands/render_options.h"
 #include "commands/turntable.h"
+#include "drawing/drawn.h"
 #include "drawing/paper.h"
 #include "image/video.h"
 #include "picture/progress.h"
@@ -43,7 +44,7 @@ surfaces. The same scene gives the same bytes, for every number of threads and a
                   FILE, writes it now and then, and removes it when the picture is written
 --checkpoint-every S  seconds from one writing of FILE to the next, 0.1 to 86400; 60 when not given
 --tolerance T     1e-3 in scene units, 1e-4rel of the bounding-box diagonal, 0.25px of the picture; otherwise the scene's
---crop x0,y0,x1,y1  only these pixels, x0 <= x < x1, y0 <= y < y1, y down
+--crop x0,y0,x1,y1  only these pixels, x0 <= x < x1, y0 <= y < y1, y down; .exr and .png say where they lie in the whole
 --aov LIST        further channels in the same .exr, of the ray through the middle of each pixel: all, or some of
                   N,Ng,P,uv,albedo,Z,patch,triangle,curvature,error,variance,sample_variance,samples (docs/rendering.md)
 --exact           rays meet the surfaces themselves, not meshes: hits are proved (docs/exact.md); slower. Curves and points are
@@ -79,6 +80,7 @@ int render_one(const Scene& scene, const std::string& output, const std::string&
     }();
     if (!picture.whole && !in_any_case) return kUnfinished;
     write_picture(options, output, scene, how, picture);
+    if (drawn_objects(scene).empty()) std::fprintf(stderr, "isoparm: warning: %s: there is nothing to draw in %s, neither objects nor surfaces nor curves\n", name.c_str(), quoted(scene.path).c_str());
     if (!quiet) std::fprintf(stderr, "%s: %s\n", name.c_str(), summary_of(picture).c_str());
     const SampleCount& n = picture.samples;
     if (!picture.whole) return kUnfinished;

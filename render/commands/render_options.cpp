@@ -9,6 +9,7 @@
 #include "drawing/paper.h"
 #include "error.h"
 #include "isoparm_version.h"
+#include "picture/layout.h"
 #include "scene/suggest.h"
 #include "text/short_text.h"
 
@@ -87,7 +88,14 @@ RenderOptions rendering_of(RenderOptions how, const std::string& path) {
 
 void write_picture(const Options& options, const std::string& path, const Scene& scene, const RenderOptions& how, const Picture& picture) {
     const Metadata metadata = metadata_of(scene, picture);
-    if (!is_paper(path)) return write_image(path, picture.image, picture.layers, metadata);
+    if (!is_paper(path)) {
+        std::optional<CropPlace> place;
+        if (how.crop) {
+            const Layout whole = layout_of(scene, how);
+            place = {(*how.crop)[0], (*how.crop)[1], whole.width, whole.height};
+        }
+        return write_image(path, picture.image, picture.layers, metadata, place);
+    }
     write_paper(path, {picture.image, picture.drawn, how.pixels_per_point, scene.title, options.word("--text", {"fonts", "outlines"}) == "outlines"}, metadata);
 }
 

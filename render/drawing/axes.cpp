@@ -32,7 +32,7 @@ int digits_of(const std::vector<double>& ticks) {
 class Drawer {
 public:
     Drawer(const SceneObject& o, const Color& color, const Sight& sight, double pixel, double letter,
-           std::vector<Obstacle>& obstacles, Drawing& drawing)
+           std::vector<Obstacle>& obstacles, std::vector<MarkRequest>& marks, Drawing& drawing)
         : o_(o),
           axes_(o.axes),
           color_(color),
@@ -41,6 +41,7 @@ public:
           pixel_(pixel),
           letter_(letter),
           obstacles_(obstacles),
+          marks_(marks),
           drawing_(drawing) {}
 
     void run() {
@@ -74,7 +75,7 @@ private:
         for (const double t : ticks) tick(k, t, out);
         numbers(k, axis, ticks, out, unit);
         if (!axis.name.empty() && visible(tip))
-            text(axis.name, letter_, camera_.project(tip) - (0.3 * kArrow * letter_) * along, out,
+            text(axis.name, letter_, camera_.project(tip) - (0.3 * kArrow * letter_) * along, 0, out,
                  kGap * letter_ + kArrowHalf * letter_, tip);
     }
 
@@ -141,11 +142,11 @@ private:
             const bool crossing = crossed && std::fabs(t - axes_.origin[k]) < 0.5 * kNumber * letter_ * unit;
             if (crossing && same && !named) {  // the number of all axes: once, between them
                 if (first)
-                    text(mark, kNumber * letter_, q, diagonal(k, out), 0.7 * kGap * letter_, p);
+                    text(mark, kNumber * letter_, q, 0, diagonal(k, out), 0.7 * kGap * letter_, p);
             } else if (crossing && named && !at_its_end(k)) {
-                text(mark, kNumber * letter_, q, diagonal(k, out), 0.7 * kGap * letter_, p);
+                text(mark, kNumber * letter_, q, 0, diagonal(k, out), 0.7 * kGap * letter_, p);
             } else if (!crossing || at_its_end(k)) {
-                text(mark, kNumber * letter_, q + (kTick * letter_) * out, out, kGap * letter_, p);
+                text(mark, kNumber * letter_, q, kTick * letter_, out, kGap * letter_, p);
             }
         }
     }
@@ -179,12 +180,22 @@ private:
         return length(sum) > 0.1 ? (1 / length(sum)) * sum : out;
     }
 
-    void text(const MathText& what, double size, const Vec2& at, const Vec2& out, double gap, const Point& place) {
-        const TextPlace t = text_beside(what, size, at, out.x, out.y, gap);
-        drawing_.push_back({t.text, color_, opacity(place)});
-        const double step = 0.25 * size;
-        for (double x = t.left; x <= t.right; x += step)
-            for (double y = t.top; y <= t.bottom; y += step) obstacles_.push_back({{x, y}, 0.5 * step});
+    /// Beside `at`, on the side `out`, beyond a tick that is `tick` long; or, where that covers something, farther out, along the axis, or on
+    /// the other side, where no tick is.
+    void text(const MathText& what, double size, const Vec2& at, double tick, const Vec2& out, double gap,
+              const Point& place) {
+        constexpr double kFarther[] = {0, 0.35, 0.8}, kAside[] = {0, 0.6, -0.6, 1.2, -1.2};  // ems
+        constexpr double kOtherSide = 1.2;
+        MarkRequest mark{{}, color_, opacity(place)};
+        const Vec2 along{-out.y, out.x};
+        const TextPlace centred = centred_text(what, size, at);
+        for (const double side : {1.0, -1.0})
+            for (const double farther : kFarther)
+                for (const double aside : kAside) {
+                    const Vec2 by = (side > 0 ? tick : 0) * out + (aside * size) * along;
+                    mark.places.push_back({beside(shifted(centred, by), side * out.x, side * out.y, gap + farther * size), (side > 0 ? 0 : kOtherSide) + farther + std::fabs(aside)});
+                }
+        marks_.push_back(std::move(mark));
     }
 
     const SceneObject& o_;
@@ -195,6 +206,7 @@ private:
     double pixel_, letter_;
     double clear_ = 0;  // a ball on a tick does not hide its number
     std::vector<Obstacle>& obstacles_;
+    std::vector<MarkRequest>& marks_;
     Drawing& drawing_;
 };
 
@@ -216,8 +228,8 @@ std::vector<double> round_ticks(double low, double high, double least) {
 }
 
 void add_axes(const SceneObject& o, const Color& color, const Sight& sight, double pixel, double letter,
-              std::vector<Obstacle>& obstacles, Drawing& drawing) {
-    Drawer(o, color, sight, pixel, letter, obstacles, drawing).run();
+              std::vector<Obstacle>& obstacles, std::vector<MarkRequest>& marks, Drawing& drawing) {
+    Drawer(o, color, sight, pixel, letter, obstacles, marks, drawing).run();
 }
 
 }  // namespace isoparm

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "drawing/flat_lines.h"
 #include "drawing/text_cairo.h"
@@ -14,7 +15,8 @@ namespace {
 // What a place costs. Nothing may lie outside or on another label if there is any other place.
 constexpr double kOutside = 1000, kOnLabel = 300, kOnLine = 1.3, kWrongSide = 2, kFar = 1.0, kNextAnchor = 0.5,
                  kHidden = 6, kLeader = 6;
-constexpr double kNear[] = {0.0, 1.0, 2.2}, kAway[] = {4.0, 6.0, 9.0};  // distances; at the latter with leaders
+constexpr double kLeaderFrom = 1.5 * 0.66;  // from what a label names, in ems; a letter is 0.66 high
+constexpr double kNear[] = {0.0, 1.0, 2.2}, kAway[] = {4.0, 6.0, 9.0};  // distances; at the latter always with leaders
 
 struct Box {
     double left, top, right, bottom;
@@ -45,6 +47,7 @@ public:
         double least = INFINITY;
         const auto consider = [&](const Anchor& anchor, int side, double distance, bool far, double extra) {
             const TextPlace there = candidate(request, anchor, side, distance);
+            far = far || (leader.value_or(true) && apart(there, request) > kLeaderFrom * request.size);
             const double cost = cost_of(there, request, anchor, side, distance) + extra + (far ? crossed(there, anchor, request.size) : 0);
             if (cost < least) least = cost, best = {there, &anchor, far};
         };
@@ -64,7 +67,22 @@ public:
         return best;
     }
 
+    TextPlace place(const MarkRequest& request) {
+        const MarkRequest::Place* best = nullptr;
+        double least = INFINITY;
+        for (const MarkRequest::Place& p : request.places)
+            if (const double cost = p.cost + cost_of(p.at, p.at.text.size); cost < least) least = cost, best = &p;
+        taken_.push_back(grown(best->at, 0.12 * best->at.text.size));
+        return best->at;
+    }
+
 private:
+    /// From a label to the nearest place that it names.
+    static double apart(const TextPlace& t, const LabelRequest& request) {
+        double least = INFINITY;
+        for (const Anchor& a : request.anchors) least = std::min(least, distance_to(grown(t, 0), a.at) - a.gap);
+        return least;
+    }
     static std::vector<Vec2> along_leader(const TextPlace& t, const Anchor& anchor, double size) {
         const auto line = leader_of(t.left, t.top, t.right, t.bottom, anchor, size);
         std::vector<Vec2> points;
@@ -91,23 +109,26 @@ private:
                            anchor.gap + (0.22 + 0.45 * far) * request.size);
     }
     double cost_of(const TextPlace& t, const LabelRequest& request, const Anchor& anchor, int side, double far) const {
-        const Box box = grown(t, 0.1 * request.size);
-        double cost =
-            kOutside * (1 - common(box, picture_).area() / box.area()) + kFar * far + kHidden * (1 - anchor.seen);
-        for (const Box& other : taken_)
-            if (const double both = common(box, other).area(); both > 0) cost += kOnLabel * (0.2 + both / box.area());
-        double covered = 0;
-        for (const Obstacle& o : obstacles_) {
-            const double in = 0.1 * request.size + o.radius - distance_to(box, o.at);
-            if (in > 0) covered += std::min(1.0, in / (0.1 * request.size));
-        }
-        cost += kOnLine * covered;
+        double cost = cost_of(t, request.size) + kFar * far + kHidden * (1 - anchor.seen);
         const double away = std::hypot(anchor.away.x, anchor.away.y);
         if (side < 8 && away > 0) {
             const auto [x, y] = direction(side);
             cost += kWrongSide * (1 - (x * anchor.away.x + y * anchor.away.y) / away);
         }
         return cost;
+    }
+    /// Of what a text covers.
+    double cost_of(const TextPlace& t, double size) const {
+        const Box box = grown(t, 0.1 * size);
+        double cost = kOutside * (1 - common(box, picture_).area() / box.area());
+        for (const Box& other : taken_)
+            if (const double both = common(box, other).area(); both > 0) cost += kOnLabel * (0.2 + both / box.area());
+        double covered = 0;
+        for (const Obstacle& o : obstacles_) {
+            const double in = 0.1 * size + o.radius - distance_to(box, o.at);
+            if (in > 0) covered += std::min(1.0, in / (0.1 * size));
+        }
+        return cost + kOnLine * covered;
     }
 
     const std::vector<Obstacle>& obstacles_;
@@ -126,7 +147,16 @@ TextPlace centred_text(const MathText& text, double size, const Vec2& middle) {
 }
 
 TextPlace text_beside(const MathText& text, double size, const Vec2& at, double x, double y, double gap) {
-    TextPlace t = centred_text(text, size, at);
+    return beside(centred_text(text, size, at), x, y, gap);
+}
+
+TextPlace shifted(TextPlace t, const Vec2& by) {
+    t.text.at.x += by.x, t.left += by.x, t.right += by.x;
+    t.text.at.y += by.y, t.top += by.y, t.bottom += by.y;
+    return t;
+}
+
+TextPlace beside(TextPlace t, double x, double y, double gap) {
     // To the side until the box clears a disc of radius `gap`: along x or y its edge, diagonally its corner.
     const double half_width = 0.5 * (t.right - t.left), half_height = 0.5 * (t.bottom - t.top);
     const auto shift = [&](double d, double half) {
@@ -134,10 +164,7 @@ TextPlace text_beside(const MathText& text, double size, const Vec2& at, double 
                    ? 0.0
                    : d * gap + std::copysign(half * std::min(1.0, std::fabs(d) / std::numbers::sqrt2 * 2), d);
     };
-    const double dx = shift(x, half_width), dy = shift(y, half_height);
-    t.text.at.x += dx, t.left += dx, t.right += dx;
-    t.text.at.y += dy, t.top += dy, t.bottom += dy;
-    return t;
+    return shifted(std::move(t), {shift(x, half_width), shift(y, half_height)});
 }
 
 std::vector<Vec2> leader_of(double left, double top, double right, double bottom, const Anchor& anchor, double size) {
@@ -150,8 +177,9 @@ std::vector<Vec2> leader_of(double left, double top, double right, double bottom
 }
 
 void place_labels(const std::vector<LabelRequest>& requests, const std::vector<Obstacle>& obstacles, int width,
-                  int height, Drawing& drawing) {
+                  int height, Drawing& drawing, const std::vector<MarkRequest>& marks) {
     Placer placer(obstacles, width, height);
+    for (const MarkRequest& m : marks) drawing.push_back({placer.place(m).text, m.color, m.opacity});
     for (const LabelRequest& r : requests) {
         if (r.anchors.empty() || r.label->text.empty()) continue;
         const auto [t, anchor, far] = placer.place(r);

@@ -27,23 +27,37 @@ struct LabelRequest {
     Color color;
 };
 
-/// From a label's box toward its anchor, which has a gap around it: two points, or none where there is no room.
-std::vector<Vec2> leader_of(double left, double top, double right, double bottom, const Anchor& anchor, double size);
-
-/// Places one label after the other, each where it costs least among the eight sides of its anchors and some distances. One that
-/// has to stand far off gets a leader: a thin line to what it names. The outcome depends on nothing but the arguments. Texts go to
-/// the end of the drawing, each behind its leader.
-void place_labels(const std::vector<LabelRequest>& requests, const std::vector<Obstacle>& obstacles, int width,
-                  int height, Drawing& drawing);
-
 /// A text whose ink has its middle at `middle`, and the box that it then fills.
 struct TextPlace {
     Text text;
     double left, top, right, bottom;
 };
+/// A text that may stand in some places only, as numbers of axes.
+struct MarkRequest {
+    struct Place {
+        TextPlace at;
+        double cost = 0;  // the lower, the better; to cover a point of a line is 1.3
+    };
+    std::vector<Place> places;
+    Color color;
+    double opacity = 1;
+};
+
+/// From a label's box toward its anchor, which has a gap around it: two points, or none where there is no room.
+std::vector<Vec2> leader_of(double left, double top, double right, double bottom, const Anchor& anchor, double size);
+
+/// Places the marks and then one label after the other, each where it costs least: labels among the eight sides of their anchors and some
+/// distances. One that stands more than 1.5 letter heights off gets a leader: a thin line to what it names. The outcome depends on nothing but
+/// the arguments. Texts go to the end of the drawing, each behind its leader.
+void place_labels(const std::vector<LabelRequest>& requests, const std::vector<Obstacle>& obstacles, int width,
+                  int height, Drawing& drawing, const std::vector<MarkRequest>& marks = {});
+
 TextPlace centred_text(const MathText& text, double size, const Vec2& middle);
 /// The same beside `at`: in direction (x,y), of unit length, `gap` pixels away.
 TextPlace text_beside(const MathText& text, double size, const Vec2& at, double x, double y, double gap);
+/// The same of a text that stands centred at `at`.
+TextPlace beside(TextPlace centred, double x, double y, double gap);
+TextPlace shifted(TextPlace t, const Vec2& by);
 /// The rim of letters of this size.
 double halo_of(double size);
 

@@ -55,7 +55,10 @@ std::string mathematics(const TextRun& run) {
 class Writer {
 public:
     std::string run(const MathText& text) {
-        for (const TextRun& r : text) prose(r) ? words(r) : formula(r);
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            prose(text[i]) && roots_.empty() ? words(text[i]) : text[i].covers > 0 ? root(text[i], i + text[i].covers) : formula(text[i]);
+            while (!roots_.empty() && roots_.back().last == i) end_root();
+        }
         leave();
         return out_;
     }
@@ -70,6 +73,17 @@ private:
             const std::string name = tex_of_symbol(c);
             out_ += name.empty() ? escaped(c) : "$" + name + "$";
         }
+    }
+    /// \sqrt, up to the end of that run.
+    void root(const TextRun& r, std::size_t last) {
+        formula({"", false, false, r.scale, r.rise});
+        out_ += "\\sqrt{";
+        roots_.push_back({last, levels_.size()});
+        levels_.push_back({r.scale, r.rise});
+    }
+    void end_root() {
+        while (levels_.size() > roots_.back().levels) close();
+        roots_.pop_back();
     }
     void formula(const TextRun& r) {
         if (!inside_) out_ += "$", inside_ = true;
@@ -90,6 +104,10 @@ private:
         if (inside_) out_ += "$";
         inside_ = false;
     }
+    struct Root {
+        std::size_t last, levels;
+    };
+    std::vector<Root> roots_;
     std::string out_;
     bool inside_ = false;
     std::vector<Level> levels_{{1, 0}};

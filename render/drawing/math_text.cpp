@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "drawing/math_spacing.h"
 #include "drawing/math_symbols.h"
 #include "scene/suggest.h"
 
@@ -35,12 +36,34 @@ public:
         prose_ = before;
     }
     void mathematics(std::size_t from, std::size_t to) {
+        begin();
         for (at_ = from; at_ < to;) atom(to);
+        begin();
     }
     MathText take() { return std::move(runs_); }
 
 private:
     [[noreturn]] void fail(std::size_t at, const std::string& message) const { throw MathTextError(at, message); }
+
+    /// Nothing before it: where a formula begins or has ended.
+    void begin() {
+        join(MathClass::none);
+        last_ = MathClass::none, written_ = 0;
+    }
+    /// The space between what was put last and what comes now. Scripts have none.
+    void join(MathClass now) {
+        if (scale_ != 1 || prose_) return;
+        if (last_ == MathClass::binary && leaves_alone(now)) {  // a sign with nothing behind it
+            if (binary_ < runs_.size()) runs_[binary_].before = 0;
+            last_ = MathClass::ordinary;
+        }
+        now = math_class_behind(last_, now);
+        if (now == MathClass::none) return;
+        const double more = space_between(last_, now) - written_;
+        before_ = std::max(0.0, more);
+        if (now == MathClass::binary) binary_ = before_ > 0 ? runs_.size() : std::string::npos;
+        last_ = now, written_ = 0;
+    }
 
     /// One letter, symbol, group or script.
     void atom(std::size_t to) {
@@ -97,14 +120,12 @@ private:
         if (name == "mathit") return argument(name, to);
         if (name == "text" || name == "textrm") {
             const auto [from, end] = braces(name, to);
+            join(MathClass::ordinary);
             prose(from, end);
             return;
         }
         if (name == "frac" || name == "tfrac" || name == "dfrac") return fraction(name, to);
-        if (name == "sqrt") {
-            put("\u221a", false);
-            return bracketed(name, to, true);
-        }
+        if (name == "sqrt") return root(name, to);
         if (name == "left" || name == "right") {
             if (at_ < to && text_[at_] == '.') ++at_;
             return;
@@ -125,6 +146,18 @@ private:
         while (at_ < to && text_[at_] == ' ') ++at_;
         if (at_ >= to || text_[at_] == '_' || text_[at_] == '^') fail(at_ - 1, "found nothing behind \"\\" + name + "\", expected a character or {several}");
         atom(to);
+    }
+    void root(const std::string& name, std::size_t to) {
+        fresh_ = true;
+        put("\u221a", false);
+        const std::size_t sign = runs_.size() - 1;
+        fresh_ = true;
+        last_ = MathClass::none;
+        argument(name, to);
+        join(MathClass::none);
+        runs_[sign].covers = runs_.size() - 1 - sign;
+        fresh_ = true;
+        last_ = MathClass::ordinary;
     }
     /// A fraction in one line; what would be read wrongly without brackets gets some.
     void fraction(const std::string& name, std::size_t to) {
@@ -183,6 +216,9 @@ private:
     }
     void put(const std::string& characters, bool italic) {
         italic = italic && !upright_ && !bold_ && alphabet_.empty();
+        if (const double space = space_of(characters); space > 0) written_ += scale_ == 1 && !prose_ ? space : 0;
+        else join(math_class(characters));
+        if (before_ > 0) fresh_ = true;
         std::string letters;
         for (std::size_t i = 0; i < characters.size(); i += character(characters, i)) {
             const std::string other = alphabet_.empty() ? "" : math_letter(alphabet_, characters[i]);
@@ -192,7 +228,8 @@ private:
             runs_.back().text += letters;
             return;
         }
-        runs_.push_back({letters, italic, bold_, scale_, rise_, next_, prose_});
+        runs_.push_back({letters, italic, bold_, scale_, rise_, next_, prose_, before_});
+        before_ = 0;
         fresh_ = false;
         next_ = TextRun::Begins::behind;
     }
@@ -205,6 +242,9 @@ private:
     std::string accents_, alphabet_;  // above each letter; \mathbb or \mathcal
     TextRun::Begins next_ = TextRun::Begins::behind;
     int depth_ = 0;
+    MathClass last_ = MathClass::none;  // of what was put last, in the formula's own size
+    double written_ = 0, before_ = 0;   // space behind that: what was written, and what goes before the next run
+    std::size_t binary_ = 0;            // the run of the last binary sign
 };
 
 bool looks_like_mathematics(const std::string& s) {

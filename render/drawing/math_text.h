@@ -1,7 +1,7 @@
 // math_text.h -- short texts as a paper prints them: "P_{00}", "c_0", "\alpha_i^2", "Triangle $T_1$".
 //
 // Between two $ is mathematics: letters slanted, digits and signs upright, _ and ^ with one character or {several},
-// names like \alpha, accents like \hat; \frac{a}{b} stands in one line, as a/b. A text without $ is mathematics as a whole when it has _, ^ or \, or no word of two letters.
+// names like \alpha, accents like \hat; \frac{a}{b} stands in one line, as a/b; around relations, binary signs and behind commas is TeX's space. A text without $ is mathematics as a whole when it has _, ^ or \, or no word of two letters.
 #pragma once
 #include <cstddef>
 #include <stdexcept>
@@ -20,6 +20,8 @@ struct TextRun {
     /// where that subscript began.
     enum class Begins { behind, subscript, over_subscript } begins = Begins::behind;
     bool prose = false;  // no mathematics
+    double before = 0;   // space before it, beside what is written
+    std::size_t covers = 0;  // of a radical sign: so many runs behind it are under its bar
 };
 using MathText = std::vector<TextRun>;
 

@@ -49,7 +49,7 @@ public:
         for (const SceneObject& o : objects) add(o);
         for (const auto& [x, y, width, height] : place_.covered) avoid_box(x, y, width, height);
         for (const SceneObject& o : objects) add_labels(o);
-        place_labels(requests_, obstacles_, camera_.width, camera_.height, drawing_);
+        place_labels(requests_, obstacles_, camera_.width, camera_.height, drawing_, marks_);
         if (!place_.inset) {
             const LegendRoom room = legend_room(objects, letter_, 2 * camera_.width);
             const Drawing bars = legends(scales_, camera_.width + room.width, camera_.height, room.letter);
@@ -86,7 +86,7 @@ private:
                 return;
             case Kind::axes:
                 add_axes(o, o.color.value_or(ink_color()), sight_, pixel_,
-                         o.label.size ? *o.label.size * pixel_ : letter_, obstacles_, drawing_);
+                         o.label.size ? *o.label.size * pixel_ : letter_, obstacles_, marks_, drawing_);
                 return;
             case Kind::arrow:
                 add_arrow(o.arrow, {o.color.value_or(ink_color()), o.opacity, o.line.width * pixel_, scaled(o.line.dash), o.line.hidden}, sight_, drawing_);
@@ -223,6 +223,7 @@ private:
     std::optional<LabelAnchors> anchors_;
     std::vector<Obstacle> obstacles_;
     std::vector<LabelRequest> requests_;
+    std::vector<MarkRequest> marks_;
     std::deque<Label> labels_;  // that no object has
     std::vector<ColorScale> scales_;  // for legends
     Drawing drawing_;

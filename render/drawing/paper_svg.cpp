@@ -62,11 +62,15 @@ void add(const Text& text, const DrawingItem& item, bool outlines, std::string& 
     }
     const std::string place = decimal(text.at.x) + (text.turned ? " " : ",") + decimal(text.at.y);
     out += "<text transform=\"translate(" + place + ")" + (text.turned ? " rotate(-90)" : "") + "\"" + look + ">";
-    for (const PlacedRun& r : placed_runs(text.text, text.size)) {
-        out += "<tspan x=\"" + decimal(r.x) + "\" y=\"" + decimal(r.y) + "\" font-size=\"" + decimal(text.size * r.run->scale) + "\"" + (r.run->italic ? " font-style=\"italic\"" : "") +
+    const PlacedText placed = placed_text(text.text, text.size);
+    for (const PlacedRun& r : placed.runs) {
+        out += "<tspan x=\"" + decimal(r.x) + "\" y=\"" + decimal(r.y) + "\" font-size=\"" + decimal(text.size * r.scale) + "\"" + (r.run->italic ? " font-style=\"italic\"" : "") +
                (r.run->bold ? " font-weight=\"bold\"" : "") + ">" + escaped(r.run->text) + "</tspan>";
     }
     out += "</text>\n";
+    for (const TextBox& b : placed.bars)
+        out += "<path transform=\"translate(" + place + ")" + (text.turned ? " rotate(-90)" : "") + "\" fill=\"" + color_of(item.color) + "\"" + with_opacity("fill-opacity", item.opacity) + " d=\"" +
+               path_of({{b.left, b.top}, {b.right, b.top}, {b.right, b.bottom}, {b.left, b.bottom}}) + "Z\"/>\n";
 }
 
 }  // namespace

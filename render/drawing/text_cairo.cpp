@@ -91,15 +91,54 @@ Layout layout_of(cairo_t* c, const TextRun& run, double size) {
     return layout;
 }
 
-void add_to_path(cairo_t* c, PangoLayoutLine* line, const TextRun&) { pango_cairo_layout_line_path(c, line); }
+/// What to do with each run where it stands, and with the bar over what is under a root.
+struct AddToPath {
+    void run(cairo_t* c, PangoLayoutLine* line, const TextRun&, double) const { pango_cairo_layout_line_path(c, line); }
+    void bar(cairo_t* c, const TextBox& b) const {
+        // Twice: it overlaps with the sign, whose outline may run the other way round, and once each would make a hole.
+        for (int i = 0; i < 2; ++i) cairo_rectangle(c, b.left, b.top, b.right - b.left, b.bottom - b.top);
+    }
+};
+
+constexpr double kBarGap = 0.10, kBarWidth = 0.045, kBarEnd = 0.04, kBarJoin = 0.03;  // ems of the radical sign
+
+/// The top of runs first <= i < last over the base line of the text, with bars of their own, in pixels upward.
+double top_of(cairo_t* c, const MathText& text, std::size_t first, std::size_t last, double size) {
+    double top = 0;
+    for (std::size_t i = first; i < last; ++i) {
+        const Layout layout = layout_of(c, text[i], size);
+        PangoRectangle ink;
+        pango_layout_line_get_extents(pango_layout_get_line_readonly(layout.get(), 0), &ink, nullptr);
+        top = std::max(top, text[i].rise * size - static_cast<double>(ink.y) / PANGO_SCALE);
+        if (text[i].covers > 0) top = std::max(top, top_of(c, text, i + 1, i + 1 + text[i].covers, size) + (kBarGap + kBarWidth) * text[i].scale * size);
+    }
+    return top;
+}
+
+/// How much larger a radical sign has to be so that its bar is above what it covers.
+double growth(cairo_t* c, const MathText& text, std::size_t sign, double size) {
+    const TextRun& run = text[sign];
+    if (run.covers == 0) return 1;
+    const Layout layout = layout_of(c, run, size);
+    PangoRectangle ink;
+    pango_layout_line_get_extents(pango_layout_get_line_readonly(layout.get(), 0), &ink, nullptr);
+    const double has = -static_cast<double>(ink.y) / PANGO_SCALE, em = run.scale * size;
+    return std::max(1.0, (top_of(c, text, sign + 1, sign + 1 + run.covers, size) - run.rise * size + (kBarGap + kBarWidth) * em) / has);
+}
 
 /// Puts the outlines on the context's path, from (x,y) on, or does something else with each run where it stands.
-template <class Use = decltype(&add_to_path)>
-TextBox set(cairo_t* c, const MathText& text, double size, double x, double y, Use use = add_to_path) {
+template <class Use = AddToPath>
+TextBox set(cairo_t* c, const MathText& text, double size, double x, double y, Use use = {}) {
     TextBox box{INFINITY, INFINITY, -INFINITY, -INFINITY, 0};
     double pen = x, subscript = x, furthest = x;
     bool slanted = false;
-    for (const TextRun& run : text) {
+    struct Root {
+        std::size_t last;     // run
+        double left, top, em;  // of its bar
+    };
+    std::vector<Root> roots;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const TextRun& run = text[i];
         if (run.begins == TextRun::Begins::over_subscript)
             pen = subscript + 0.06 * size;
         else
@@ -109,7 +148,9 @@ TextBox set(cairo_t* c, const MathText& text, double size, double x, double y, U
         else if (slanted && !run.italic)
             pen += 0.04 * size * run.scale;  // a slanted letter leans over what follows
         slanted = run.italic;
-        const Layout layout = layout_of(c, run, size);
+        pen += run.before * size;
+        const double grown = growth(c, text, i, size);
+        const Layout layout = layout_of(c, run, grown * size);
         if (pango_layout_get_unknown_glyphs_count(layout.get()) > 0)
             throw Error(ErrorKind::io,
                         "no font was found that has all letters of " + quoted(run.text) +
@@ -125,9 +166,16 @@ TextBox set(cairo_t* c, const MathText& text, double size, double x, double y, U
             box.bottom = std::max(box.bottom, base + unit * (ink.y + ink.height));
         }
         cairo_move_to(c, pen, base);
-        use(c, line, run);
+        use.run(c, line, run, grown);
+        if (run.covers > 0) roots.push_back({i + run.covers, pen + unit * (ink.x + ink.width) - kBarJoin * run.scale * size, base + unit * ink.y, run.scale * size});
         pen += unit * logical.width;
         furthest = std::max(furthest, pen);
+        for (; !roots.empty() && roots.back().last == i; roots.pop_back()) {
+            const Root& r = roots.back();
+            furthest = std::max(furthest, box.right) + kBarEnd * r.em;
+            use.bar(c, {r.left, r.top, furthest, r.top + kBarWidth * r.em, 0});
+            box.right = std::max(box.right, furthest);
+        }
     }
     box.advance = furthest - x;
     if (!(box.left <= box.right)) box.left = box.right = x, box.top = box.bottom = y;
@@ -136,7 +184,7 @@ TextBox set(cairo_t* c, const MathText& text, double size, double x, double y, U
 }
 
 /// The same where the text stands.
-template <class Use = decltype(&add_to_path)> void set(cairo_t* c, const Text& text, Use use = add_to_path) {
+template <class Use = AddToPath> void set(cairo_t* c, const Text& text, Use use = {}) {
     cairo_save(c);
     cairo_translate(c, text.at.x, text.at.y);
     if (text.turned) cairo_rotate(c, -std::numbers::pi / 2);
@@ -335,6 +383,15 @@ Target raster_surface(const Image& image) {
     return surface;
 }
 
+struct Show {
+    void run(cairo_t* c, PangoLayoutLine* line, const TextRun&, double) const { pango_cairo_show_layout_line(c, line); }
+    void bar(cairo_t* c, const TextBox& b) const {
+        cairo_new_path(c);
+        AddToPath().bar(c, b);
+        cairo_fill(c);
+    }
+};
+
 void put_text(cairo_t* c, const DrawingItem& item, const Text& text, bool outlines) {
     if (text.halo > 0) {
         set_source(c, text.rim, printed_halo(item.opacity));
@@ -347,7 +404,7 @@ void put_text(cairo_t* c, const DrawingItem& item, const Text& text, bool outlin
     }
     set_source(c, item.color, item.opacity);
     if (outlines) put_shape(c, text);
-    else set(c, text, [](cairo_t* to, PangoLayoutLine* line, const TextRun&) { pango_cairo_show_layout_line(to, line); });
+    else set(c, text, Show{});
 }
 
 }  // namespace
@@ -392,15 +449,20 @@ std::string png_bytes(const Image& image) {
     return bytes;
 }
 
-std::vector<PlacedRun> placed_runs(const MathText& text, double size) {
+PlacedText placed_text(const MathText& text, double size) {
+    struct Collect {
+        PlacedText& all;
+        void run(cairo_t* c, PangoLayoutLine*, const TextRun& run, double grown) const {
+            double x = 0, y = 0;
+            cairo_get_current_point(c, &x, &y);
+            all.runs.push_back({&run, x, y, grown * run.scale});
+        }
+        void bar(cairo_t*, const TextBox& b) const { all.bars.push_back(b); }
+    };
     const Canvas canvas;
-    std::vector<PlacedRun> runs;
-    set(canvas.context.get(), text, size, 0, 0, [&](cairo_t* c, PangoLayoutLine*, const TextRun& run) {
-        double x = 0, y = 0;
-        cairo_get_current_point(c, &x, &y);
-        runs.push_back({&run, x, y});
-    });
-    return runs;
+    PlacedText all;
+    set(canvas.context.get(), text, size, 0, 0, Collect{all});
+    return all;
 }
 
 std::string outline_path(const Text& text) {

@@ -36,9 +36,13 @@ std::string vector_file(const Drawing& drawing, double width, double height, Vec
 /// A run of a text where it stands: where its base line begins when the text's does at (0,0).
 struct PlacedRun {
     const TextRun* run;
-    double x, y;
+    double x, y, scale;
 };
-std::vector<PlacedRun> placed_runs(const MathText& text, double size);
+struct PlacedText {
+    std::vector<PlacedRun> runs;
+    std::vector<TextBox> bars;  // over what is under a root
+};
+PlacedText placed_text(const MathText& text, double size);
 /// The outlines of a text's letters, where it stands, as the d of an SVG path; numbers with two decimals. Filled by the nonzero rule.
 std::string outline_path(const Text& text);
 

@@ -86,12 +86,12 @@ std::vector<float> without_alpha(const Image& image) {
 }
 
 void write_file(const std::string& path, const std::string& file, const Format& format, const Image& image,
-                const Layers& layers, const Metadata& metadata) {
+                const Layers& layers, const Metadata& metadata, const CropPlace& crop) {
     const bool with_alpha = format.alpha && !opaque(image);
     std::vector<const char*> channels;
     for (const std::string& c : layers.channels) channels.push_back(c.c_str());
     IsoparmImagePixels pixels{image.width, image.height, with_alpha ? 4 : 3, format.linear, nullptr,
-                              static_cast<int>(channels.size()), channels.data(), layers.values.data()};
+                              static_cast<int>(channels.size()), channels.data(), layers.values.data(), crop.x, crop.y, crop.whole_width, crop.whole_height};
     std::vector<std::uint8_t> bytes;
     std::vector<float> rgb;
     if (!format.linear)
@@ -113,10 +113,16 @@ void write_file(const std::string& path, const std::string& file, const Format& 
     }
 }
 
-void write_png(const std::string& path, const Image& image, const Metadata& metadata) {
+void write_png(const std::string& path, const Image& image, const Metadata& metadata, const CropPlace& crop) {
     const bool with_alpha = !opaque(image);
-    const std::string file = png_file(image.width, image.height, with_alpha ? 4 : 3, bytes_of(image, with_alpha), metadata);
+    const std::string file = png_file(image.width, image.height, with_alpha ? 4 : 3, bytes_of(image, with_alpha), metadata, {crop.x, crop.y});
     write_atomically(path, [&](std::ostream& out) { out.write(file.data(), static_cast<std::streamsize>(file.size())); });
+}
+
+std::string comma_list(const std::array<int, 4>& numbers) {
+    std::string all;
+    for (const int n : numbers) all += (all.empty() ? "" : ",") + std::to_string(n);
+    return all;
 }
 
 void take_pixels(void* user, int width, int height, int channels, int integers, const float* data) {
@@ -149,12 +155,18 @@ void check_image_path(const std::string& path) {
 
 bool holds_layers(const std::string& path) { return format_of(path).linear; }
 
-void write_image(const std::string& path, const Image& image, const Layers& layers, const Metadata& metadata) {
+void write_image(const std::string& path, const Image& image, const Layers& layers, const Metadata& about, const std::optional<CropPlace>& cropped) {
     const Format& format = format_of(path);
+    const CropPlace crop = cropped.value_or(CropPlace{0, 0, image.width, image.height});
+    Metadata metadata = about;
+    if (cropped) {
+        metadata.emplace_back("isoparm:crop", comma_list({crop.x, crop.y, crop.x + image.width, crop.y + image.height}));
+        metadata.emplace_back("isoparm:whole", std::to_string(crop.whole_width) + "x" + std::to_string(crop.whole_height));
+    }
     if (!layers.channels.empty() && !format.linear) throw Error(ErrorKind::usage, path + ": only .exr holds further channels");
-    if (format.extension == std::string("png")) return write_png(path, image, metadata);
+    if (format.extension == std::string("png")) return write_png(path, image, metadata, crop);
     image_module();  // loaded before there is a file to lose
-    write_atomically_by_name(path, [&](const std::string& file) { write_file(path, file, format, image, layers, metadata); });
+    write_atomically_by_name(path, [&](const std::string& file) { write_file(path, file, format, image, layers, metadata, crop); });
 }
 void write_image(const std::string& path, const Image& image, const Metadata& metadata) { write_image(path, image, {}, metadata); }
 

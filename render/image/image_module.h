@@ -17,6 +17,7 @@ struct IsoparmImagePixels {
     int layers;
     const char* const* layer_names;
     const float* layer_data;
+    int x, y, whole_width, whole_height;  // where they lie in the whole picture: with half floats data window and display window
 };
 
 /// Writes `file` in the format of that extension ("png") and reads it back; `lossy` formats need only come back in the same

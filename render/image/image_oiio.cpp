@@ -176,6 +176,12 @@ void write_pixels(const char* file, const char* type, const OIIO::ImageSpec& spe
     memory.store(file);
 }
 
+void set_place(OIIO::ImageSpec& spec, const IsoparmImagePixels& p) {
+    if (!p.half) return;  // of others only TIFF has it, as a place on a page
+    spec.x = p.x, spec.y = p.y;
+    spec.full_width = p.whole_width, spec.full_height = p.whole_height;
+}
+
 void write_layers(const char* file, const char* type, const IsoparmImagePixels& p, const char* const* names, const char* const* values, int metadata) {
     const std::vector<float> data = all_channels(p);
     OIIO::ImageSpec spec(p.width, p.height, p.channels + p.layers, OIIO::TypeDesc::FLOAT);
@@ -184,6 +190,7 @@ void write_layers(const char* file, const char* type, const IsoparmImagePixels& 
     spec.channelformats.assign(p.channels, OIIO::TypeDesc::HALF);
     spec.channelformats.resize(spec.nchannels, OIIO::TypeDesc::FLOAT);
     spec.attribute("oiio:ColorSpace", "Linear");
+    set_place(spec, p);
     set_metadata(spec, names, values, metadata);
     write_pixels(file, type, spec, OIIO::TypeDesc::FLOAT, data.data());
     const auto in = opened_as(file, type);
@@ -208,6 +215,7 @@ void write(const char* file, const char* type, const IsoparmImagePixels& p, bool
     spec.attribute("oiio:ColorSpace", p.half ? "Linear" : "sRGB");
     if (!p.half) spec.attribute("oiio:UnassociatedAlpha", 1);
     if (lossy) spec.attribute("Compression", "jpeg:95");
+    set_place(spec, p);
     set_metadata(spec, names, values, metadata);
     write_pixels(file, type, spec, format, data);
     check_written(file, type, p, data, format, lossy);  // 2.4.7 reports success for PNG on a full disk

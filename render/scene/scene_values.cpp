@@ -1,6 +1,7 @@
 #include "scene/scene_values.h"
 
 #include <cmath>
+#include <utility>
 
 #include "scene/suggest.h"
 
@@ -224,20 +225,31 @@ int hex_digit(char c) {
     if (c >= 'A' && c <= 'F') return c - 'A' + 10;
     return -1;
 }
+
+/// The basic colours of CSS (its second level: the sixteen of HTML 4, and orange).
+constexpr std::pair<const char*, const char*> kColorNames[] = {
+    {"aqua", "#00ffff"}, {"black", "#000000"}, {"blue", "#0000ff"}, {"fuchsia", "#ff00ff"}, {"gray", "#808080"}, {"green", "#008000"},
+    {"lime", "#00ff00"}, {"maroon", "#800000"}, {"navy", "#000080"}, {"olive", "#808000"}, {"orange", "#ffa500"}, {"purple", "#800080"},
+    {"red", "#ff0000"}, {"silver", "#c0c0c0"}, {"teal", "#008080"}, {"white", "#ffffff"}, {"yellow", "#ffff00"}};
+std::vector<std::string> color_names() {
+    std::vector<std::string> names;
+    for (const auto& named : kColorNames) names.push_back(named.first);
+    return names;
+}
 }  // namespace
 
 Color SceneValues::color(const Json& j) const {
-    const std::string expected = "a colour: [r, g, b] with values from 0 to 1, \"#rrggbb\", \"white\" or \"black\"";
+    const std::string expected = "a colour: [r, g, b] with values from 0 to 1, \"#rrggbb\" or a basic name of CSS (" + listed(color_names()) + ")";
     Color c;
     if (j.is(Kind::array) && j.size() == 3) {
         for (int i = 0; i < 3; ++i) c[i] = linear(in_range(j[i], 0, 1, "a part of a colour, from 0 to 1"));
         return c;
     }
     if (!j.is(Kind::string)) j.expected(expected);
-    const std::string& s = j.string();
-    if (s == "white") return {1, 1, 1};
-    if (s == "black") return {0, 0, 0};
-    if ((s.size() != 4 && s.size() != 7) || s[0] != '#') j.expected(expected);
+    std::string s = j.string();
+    for (const auto& [name, hex] : kColorNames)
+        if (s == name) s = hex;
+    if ((s.size() != 4 && s.size() != 7) || s[0] != '#') j.expected(expected + did_you_mean(s, color_names()));
     for (int i = 0; i < 3; ++i) {
         const bool brief = s.size() == 4;
         const int high = hex_digit(s[brief ? 1 + i : 1 + 2 * i]), low = hex_digit(s[brief ? 1 + i : 2 + 2 * i]);

@@ -45,7 +45,7 @@ public:
     /// Any of the keys translate, rotate, scale, mirror, matrix of the object j; at least one.
     Transform transform(const Json& j) const;
     static const std::vector<std::string>& transform_keys();
-    /// "white", "black", "#rrggbb", "#rgb" or [r,g,b]: sRGB in [0,1], turned into linear.
+    /// A basic name of CSS ("red"), "#rrggbb", "#rgb" or [r,g,b]: sRGB in [0,1], turned into linear.
     Color color(const Json& j) const;
 };
 
