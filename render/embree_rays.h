@@ -54,6 +54,7 @@ struct Geometry {
     std::uint32_t mesh = 0;  // number of the mesh it is a part of; meaningless for others
     float opacity = 1;
     bool solid = false;  // a tube or ball: counts once however often a ray passes through its skin
+    bool quads = false;  // a QuadPart
     const ExactPatch* patch = nullptr;  // rays meet it itself; mesh is then its group
     const QuickPatch* quick = nullptr;  // of it; nullptr where float32 is of no use
     const Point* centre = nullptr;
