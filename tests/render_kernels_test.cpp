@@ -47,6 +47,7 @@ TEST(RenderCoverage, RaysOfUncoveredPixelsMeetNothing) {
     for (const char* name : {"teapot", "cone", "side_vertex", "s004_control_net"}) {  // with tubes and balls
         Scene scene = shipped(name);
         const TracedScene traced = build_traced_scene(scene, 1e-2 * bounding_box(scene).diagonal(), {});
+        const TracedScene quads = build_traced_scene(scene, drawn_objects(scene), 1e-2 * bounding_box(scene).diagonal(), {}, false, 0, 0);
         const Bounds box = bounding_box(scene);
         const Point middle = 0.5 * (box.low + box.high);
         for (int k = 0; k < 8; ++k) {
@@ -57,7 +58,7 @@ TEST(RenderCoverage, RaysOfUncoveredPixelsMeetNothing) {
             if (k % 4 == 3) settings.orthographic = 1.2 * box.diagonal();
             Camera camera = make_camera(settings, drawn_points(scene), 61, 47);
             if (k % 4 == 2) camera = zoomed(camera, 10, 7, 30, 61, 47);
-            least = std::min(least, check_covered(traced, camera, random, name));
+            least = std::min(least, check_covered(k % 3 == 1 ? quads : traced, camera, random, name));
         }
     }
     EXPECT_LT(least, 0.5);

@@ -15,6 +15,7 @@
 #include "bounds/bound_cell.h"
 #include "bounds/proof.h"
 #include "composite.h"
+#include "release.h"
 #include "scalar/vec.h"
 #include "topology.h"
 
@@ -175,7 +176,7 @@ public:
     /// Leaves nothing of a patch but its corners.
     void drop_triangles(std::size_t member) {
         PatchMesh& p = patches_[member];
-        p.triangles = {}, p.edges = {}, p.settled = {}, p.fresh = {}, p.slack = {};
+        release(p.triangles), release(p.edges), release(p.settled), release(p.fresh), release(p.doubtful), release(p.slack);
     }
     /// The corners of a patch, which are then no longer here.
     void move_corners(std::size_t member, std::vector<Vec2>& uv, std::vector<std::uint32_t>& vertex) { uv = std::move(patches_[member].uv), vertex = std::move(patches_[member].vertex); }

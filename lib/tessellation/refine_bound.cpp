@@ -56,7 +56,7 @@ void Refinement::keep_doubtful(PatchMesh& mesh, bool strips) const {
     for (std::size_t i = 0; i < mesh.fresh.size(); ++i)
         if (strips ? is_doubtful(mesh, mesh.triangles[mesh.fresh[i]]) : mesh.doubtful[i] != 0) mesh.fresh[kept++] = mesh.fresh[i];
     mesh.fresh.resize(kept), mesh.fresh.shrink_to_fit();
-    mesh.doubtful = {};
+    release(mesh.doubtful);
 }
 
 void Refinement::bound_together(const PatchMesh& mesh, std::uint32_t member, std::span<PatchTriangle*> triangles, bool quick) const {

@@ -14,9 +14,8 @@ Point at_lane(const double (*d)[SurfelLanes::lanes], int i) { return {d[0][i], d
 void put(const Point& p, double (*to)[SurfelLanes::lanes], int i) { to[0][i] = p.x, to[1][i] = p.y, to[2][i] = p.z; }
 
 /// Parameters of the hit: those of the corners, weighted as the hit is.
-Vec2 parameters(Domain domain, const Rect& r, const MeshPart& part, const Hit& hit) {
-    const auto& corners = part.triangles[hit.primitive];
-    const Vec2 &a = part.uv[corners[0]], &b = part.uv[corners[1]], &c = part.uv[corners[2]];
+Vec2 parameters(Domain domain, const Rect& r, const Thing& thing, const Hit& hit) {
+    const auto [a, b, c] = parameters_of(thing, hit.primitive);
     const double w = 1 - hit.u - hit.v;
     Vec2 p{std::clamp(w * a.x + hit.u * b.x + hit.v * c.x, r.u0, r.u1),
            std::clamp(w * a.y + hit.u * b.y + hit.v * c.y, r.v0, r.v1)};
@@ -38,7 +37,7 @@ void set_frames(const TracedScene& scene, const Hit* hits, int n, Vec2* at, Surf
         for (int i = first; i < n; ++i) {
             const Thing& thing = scene.things[hits[i].geometry];
             if (thing.patch != patch) continue;
-            at[i] = thing.mesh ? parameters(domain, rect, *thing.part, hits[i]) : Vec2{hits[i].u, hits[i].v};
+            at[i] = thing.mesh ? parameters(domain, rect, thing, hits[i]) : Vec2{hits[i].u, hits[i].v};
             u[count] = at[i].x, v[count] = at[i].y;
             which[count++] = i;
             done[i] = true;
@@ -55,8 +54,8 @@ void set_frames(const TracedScene& scene, const Hit* hits, int n, Vec2* at, Surf
 
 /// The triangle that was met.
 void set_corners(const Thing& thing, const Hit& hit, int i, SurfelLanes& p) {
-    const auto& corners = thing.part->triangles[hit.primitive];
-    for (int k = 0; k < 3; ++k) put(thing.mesh->positions[thing.part->vertex[corners[k]]], p.corner[k], i);
+    const auto corners = corners_of(thing, hit.primitive);
+    for (int k = 0; k < 3; ++k) put(corners[k], p.corner[k], i);
     p.u[i] = hit.u, p.v[i] = hit.v;
 }
 

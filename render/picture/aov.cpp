@@ -126,9 +126,10 @@ AovReader::AovReader(const Scene& scene, const TracedScene& traced, const Camera
                 if (&m.patch == thing.patch) patch_.back() = static_cast<float>(number);
                 ++number;
             }
-        const bool many = thing.mesh && thing.part->triangles.size() > kMostNumbers;
+        const std::size_t triangles = !thing.mesh ? 0 : thing.quads ? thing.quads->triangles() : thing.part->triangles.size();
+        const bool many = triangles > kMostNumbers;
         if (many && std::find(aovs_.begin(), aovs_.end(), Aov::triangle) != aovs_.end())
-            throw Error(ErrorKind::usage, "--aov triangle: patch " + thing.part->name + " has " + std::to_string(thing.part->triangles.size()) +
+            throw Error(ErrorKind::usage, "--aov triangle: patch " + thing.part->name + " has " + std::to_string(triangles) +
                                               " triangles, expected at most " + std::to_string(kMostNumbers) + "; use a larger --tolerance");
     }
 }
@@ -142,7 +143,7 @@ void AovReader::read(int x, int y, const PixelSamples& samples, float* out) cons
         seen.thing = &traced_.things[hit.geometry];
         surfels_at(traced_, camera_, &ray, &hit, 1, &seen.surfel);
         seen.depth = camera_.depth(seen.surfel.position);
-        seen.triangle = hit.primitive;
+        seen.triangle = seen.thing->quads ? seen.thing->quads->triangle(hit.primitive) : hit.primitive;
         seen.error = hit.error;
     }
     for (const Aov a : aovs_) {

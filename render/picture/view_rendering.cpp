@@ -38,6 +38,9 @@ std::optional<double> height_of(const Ground& ground, const Scene& scene, const 
     const auto add = [&](const Point& p, double radius) { low = std::min(low, dot(p, ground.up) - radius); };
     for (const Mesh& mesh : traced.meshes)
         for (const Point& p : mesh.positions) add(p, 0);
+    for (const std::vector<QuadPart>& parts : traced.quads)
+        for (const QuadPart& part : parts)
+            for (std::size_t i = 0; i < part.vertices().size(); ++i) add(part.vertices()[i], 0);
     const double size = bounding_box(scene).diagonal();
     for (const SceneObject& o : objects) {
         const bool tubes = o.kind == SceneObject::Kind::surface && o.boundary && !(o.line.width > 0);

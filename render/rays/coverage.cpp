@@ -22,10 +22,12 @@ Coverage::Coverage(const TracedScene& scene, const Camera& camera)
     tbb::parallel_for(std::size_t(0), scene.things.size(), [&](std::size_t k) {
         const Thing& thing = scene.things[k];
         if (!thing.part) return;
-        for (const auto& t : thing.part->triangles) {
-            const auto vertex = [&](int i) { return thing.mesh->positions[thing.part->vertex[t[i]]]; };
-            const Point corners[] = {vertex(0), vertex(1), vertex(2)};
-            mark(corners, 3, clear);
+        for (std::uint32_t i = 0; i < thing.part->triangles.size(); ++i) mark(corners_of(thing, i).data(), 3, clear);
+        if (!thing.quads) return;
+        for (const auto& quad : thing.quads->quads()) {
+            const auto vertex = [&](int i) { return thing.quads->vertices()[quad[i]]; };
+            const Point corners[] = {vertex(0), vertex(1), vertex(2), vertex(3)};
+            mark(corners, 4, clear);
         }
     });
     for (const Solid& s : scene.solids) mark(s.points.data(), static_cast<int>(s.points.size()), 1.01 * s.radius + clear);

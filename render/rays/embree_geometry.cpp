@@ -21,14 +21,15 @@ EmbreeScene::~EmbreeScene() = default;
 
 std::uint32_t EmbreeScene::add_mesh(const Mesh& mesh, double opacity) {
     State& s = *state_;
-    std::vector<float>& vertices =
-        s.shared.emplace_back(3 * mesh.positions.size() + 4);  // Embree may read 16 bytes at once
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) s.store(mesh.positions[i], 0, &vertices[3 * i]);
+    FloatVertices& vertices = s.shared.emplace_back(mesh.positions.size(), s.centre);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) vertices.set(i, mesh.positions[i]);
+    s.extent.add(vertices.extent());
+    ++s.meshes;
     std::uint32_t first = Hit::none;
     for (const MeshPart& part : mesh.parts) {
         RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_TRIANGLE);
         rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0,
-                                   3 * sizeof(float), mesh.positions.size());
+                                   3 * sizeof(float), vertices.size());
         auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
             g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), part.triangles.size()));
         if (!index && !part.triangles.empty()) s.check("taking over a mesh");
@@ -40,14 +41,32 @@ std::uint32_t EmbreeScene::add_mesh(const Mesh& mesh, double opacity) {
     return first;
 }
 
+std::uint32_t EmbreeScene::add_quads(const std::vector<QuadPart>& parts, double opacity) {
+    State& s = *state_;
+    s.quads = true;
+    // Hierarchies that hold no vertices, but look them up, are a third smaller.
+    rtcSetSceneFlags(s.scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT));
+    ++s.meshes;
+    std::uint32_t first = Hit::none;
+    for (const QuadPart& part : parts) {
+        RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_QUAD);
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part.vertices().data(), 0, 3 * sizeof(float), part.vertices().size());
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, part.quads().data(), 0, 4 * sizeof(std::uint32_t), part.quads().size());
+        s.extent.add(part.vertices().extent());
+        const std::uint32_t id = s.attach(g, opacity, false, true);
+        if (first == Hit::none) first = id;
+    }
+    return first;
+}
+
 std::uint32_t EmbreeScene::add_patch(const ExactPatch& patch, std::uint32_t group, double opacity) {
     State& s = *state_;
     for (std::size_t i = 0; i < patch.leaves(); ++i)
-        for (const Point& p : {patch.box(i).low, patch.box(i).high}) s.radius = std::max(s.radius, length(p - s.centre));
+        for (const Point& p : {patch.box(i).low, patch.box(i).high}) s.extent.radius = std::max(s.extent.radius, length(p - s.centre));
     s.patches = true;
     s.translucent = s.translucent || opacity < 1;
     RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_USER);
-    Geometry& data = s.geometries.emplace_back(Geometry{0, group, static_cast<float>(opacity), false, &patch, &s.quick.emplace_back(patch, s.centre), &s.centre, &s.radius});
+    Geometry& data = s.geometries.emplace_back(Geometry{0, group, static_cast<float>(opacity), false, false, &patch, &s.quick.emplace_back(patch, s.centre), &s.centre, &s.extent.radius});
     rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(patch.leaves()));
     rtcSetGeometryUserData(g, &data);
     set_patch_callbacks(g);
@@ -71,7 +90,7 @@ std::uint32_t EmbreeScene::add_tubes(const std::vector<std::array<Point, 4>>& pi
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         index[i] = static_cast<std::uint32_t>(4 * i);
         for (const Point& p : pieces[i]) {
-            s.store(p, radius, vertex);
+            s.extent.store(p, radius, s.centre, vertex);
             vertex[3] = static_cast<float>(radius);
             vertex += 4;
         }
@@ -86,7 +105,7 @@ std::uint32_t EmbreeScene::add_balls(const std::vector<Point>& centres, double r
         rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), centres.size()));
     if (!vertex) s.check("taking over points");
     for (const Point& p : centres) {
-        s.store(p, radius, vertex);
+        s.extent.store(p, radius, s.centre, vertex);
         vertex[3] = static_cast<float>(radius);
         vertex += 4;
     }

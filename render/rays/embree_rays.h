@@ -55,6 +55,7 @@ struct Geometry {
     float opacity = 1;
     bool in_shared_plane() const { return opacity == static_cast<float>(EmbreeScene::shared_plane); }
     bool solid = false;  // a tube or ball: counts once however often a ray passes through its skin
+    bool quads = false;  // a QuadPart
     const ExactPatch* patch = nullptr;  // rays meet it itself; mesh is then its group
     const QuickPatch* quick = nullptr;  // of it; nullptr where float32 is of no use
     const Point* centre = nullptr;

@@ -6,9 +6,9 @@
 
 namespace isoparm {
 
-double EmbreeScene::radius() const { return state_->radius; }
+double EmbreeScene::radius() const { return state_->extent.radius; }
 bool EmbreeScene::translucent() const { return state_->translucent; }
-double EmbreeScene::rounding() const { return state_->rounding; }
+double EmbreeScene::rounding() const { return state_->extent.rounding; }
 
 void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
     if (n == 0) return;
@@ -48,6 +48,9 @@ void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
         } else if (s.patches && s.geometries[geometry].patch) hits[i].distance += start[i];
         else hits[i] = {start[i] + static_cast<double>(r.ray.tfar[i]), geometry, r.hit.primID[i], r.hit.u[i], r.hit.v[i], {r.hit.Ng_x[i], r.hit.Ng_y[i], r.hit.Ng_z[i]}, 0};
     }
+    if (!s.quads) return;
+    for (int i = 0; i < n; ++i)
+        if (hits[i].found()) s.to_half(hits[i]);
 }
 
 Hit EmbreeScene::first(const Ray& ray) const {
@@ -98,6 +101,7 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
         h.normal = {r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z};
         hits.push_back(h);
     }
+    for (Hit& h : hits) s.to_half(h);
     s.tidy(hits);
     s.order_in_planes(hits, ray.direction);
     for (Hit& h : hits) h.distance += start;

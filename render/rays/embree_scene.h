@@ -13,14 +13,15 @@
 #include "mesh.h"
 #include "picture/camera.h"
 #include "rays/exact_patch.h"
+#include "rays/quad_part.h"
 
 namespace isoparm {
 
 struct Hit {
     static constexpr std::uint32_t none = ~0u;
     double distance = std::numeric_limits<double>::infinity();
-    std::uint32_t geometry = none, primitive = 0;
-    double u = 0, v = 0;  // of triangles: weights of corners 1 and 2; of patches: parameters
+    std::uint32_t geometry = none, primitive = 0;  // of a QuadPart: the half
+    double u = 0, v = 0;  // of triangles and halves: weights of corners 1 and 2; of patches: parameters
     Point normal;         // geometric, outward, not of unit length; not of patches
     double error = 0;     // of patches: Root::error
     bool found() const { return geometry != none; }
@@ -40,6 +41,8 @@ public:
     /// One geometry a part, numbered one after the other; returns the first. All parts share the vertices, so that rays
     /// do not slip through between them.
     std::uint32_t add_mesh(const Mesh& mesh, double opacity);
+    /// The same of a mesh in less than half of the memory, which rays take longer to meet. Its parts must live as long, in their places; and they have the scene's centre.
+    std::uint32_t add_quads(const std::vector<QuadPart>& parts, double opacity);
     /// The patch itself, which must live as long; its neighbours are those of the same `group`.
     std::uint32_t add_patch(const ExactPatch& patch, std::uint32_t group, double opacity);
     /// Round tubes about cubic Bezier curves; returns the geometry's number.

@@ -37,13 +37,15 @@ struct EmbreeScene::State {
     RTCScene scene = nullptr;
     const ExactKernel& kernel = exact_kernel(chosen_isa());
     Point centre;
-    double radius = 0, rounding = 0;
+    FloatExtent extent;
     bool translucent = false;
     bool patches = false;  // rays meet some patch itself
+    bool quads = false;    // some mesh has quads
     mutable std::atomic<std::uint64_t> rays{0}, undecided{0};
     std::deque<Geometry> geometries;        // Embree keeps pointers to them
     std::deque<QuickPatch> quick;
-    std::deque<std::vector<float>> shared;  // vertices that Embree reads in place
+    std::deque<FloatVertices> shared;       // vertices that Embree reads in place
+    std::uint32_t meshes = 0;
 
     ~State() {
         if (scene) rtcReleaseScene(scene);
@@ -55,17 +57,8 @@ struct EmbreeScene::State {
                 std::string("Embree failed while ") + doing +
                 (e == RTC_ERROR_OUT_OF_MEMORY ? ": out of memory" : ": error " + std::to_string(e)));
     }
-    /// A vertex relative to the centre, in float32.
-    void store(const Point& p, double extent, float* out) {
-        const Point q = p - centre;
-        for (int i = 0; i < 3; ++i) out[i] = static_cast<float>(q[i]);
-        rounding = std::max(
-            rounding, (1 + 1e-9) * length(q - Point(out[0], out[1], out[2])) + 1e-16 * (length(p) + length(centre)));
-        radius = std::max(radius, length(q) + extent);
-    }
-    std::uint32_t attach(RTCGeometry g, double opacity, bool solid) {
-        const auto mesh = static_cast<std::uint32_t>(shared.size());
-        Geometry& data = geometries.emplace_back(Geometry{0, mesh, static_cast<float>(opacity), solid});
+    std::uint32_t attach(RTCGeometry g, double opacity, bool solid, bool of_quads = false) {
+        Geometry& data = geometries.emplace_back(Geometry{0, meshes, static_cast<float>(opacity), solid, of_quads});
         rtcSetGeometryUserData(g, &data);
         if (opacity < 1) {
             translucent = true;
@@ -82,7 +75,7 @@ struct EmbreeScene::State {
     double enter(const Ray& ray, RTCRay& r, RayPacket& planes) const {
         float out[7][RayPacket::group];
         double start[RayPacket::group];
-        kernel.enter(&ray, 1, RayPacket::group, centre, radius, start, {out[0], out[1], out[2], out[3], out[4], out[5], out[6]}, patches ? &planes : nullptr);
+        kernel.enter(&ray, 1, RayPacket::group, centre, extent.radius, start, {out[0], out[1], out[2], out[3], out[4], out[5], out[6]}, patches ? &planes : nullptr);
         if (patches) kernel.planes(RayPacket::group, planes);
         r.org_x = out[0][0], r.org_y = out[1][0], r.org_z = out[2][0], r.dir_x = out[3][0], r.dir_y = out[4][0], r.dir_z = out[5][0];
         r.tnear = 0, r.tfar = out[6][0], r.time = 0;
@@ -91,7 +84,7 @@ struct EmbreeScene::State {
     }
     /// The same of a packet; lanes that are not active are copies of one that is.
     void enter(const Ray* rays, std::uint32_t active, RTCRay16& r, double* start, RayPacket& planes) const {
-        kernel.enter(rays, active, packet, centre, radius, start, {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y, r.dir_z, r.tfar}, patches ? &planes : nullptr);
+        kernel.enter(rays, active, packet, centre, extent.radius, start, {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y, r.dir_z, r.tfar}, patches ? &planes : nullptr);
         if (patches) kernel.planes(packet, planes);
         for (unsigned i = 0; i < packet; ++i) r.tnear[i] = 0, r.time[i] = 0, r.mask[i] = ~0u, r.id[i] = i, r.flags[i] = 0;
     }
@@ -127,6 +120,12 @@ struct EmbreeScene::State {
                 r.hit.Ng_x[i] = fresh.hit.Ng_x[i], r.hit.Ng_y[i] = fresh.hit.Ng_y[i], r.hit.Ng_z[i] = fresh.hit.Ng_z[i];
             }
     }
+    /// Of geometry made of quads, as Embree has met it.
+    void to_half(Hit& hit) const {
+        if (!geometries[hit.geometry].quads) return;
+        hit.primitive = QuadPart::half_at(hit.primitive, hit.u, hit.v);
+        if (hit.primitive % 2) hit.u = 1 - hit.u, hit.v = 1 - hit.v;
+    }
     /// Adds to count().
     void note(const bool* open, std::uint64_t n) const {
         if (!patches) return;
@@ -138,15 +137,15 @@ struct EmbreeScene::State {
         const auto near_edge = [](const Hit& h) { return std::min({h.u, h.v, 1 - h.u - h.v}) < 1e-5; };
         const Geometry &ga = geometries[a.geometry], &gb = geometries[b.geometry];
         // Leaves of a patch, and neighbouring patches, overlap a little.
-        if (ga.patch || gb.patch) return ga.patch && gb.patch && ga.mesh == gb.mesh && b.distance - a.distance < 1e-8 * radius;
-        return !ga.solid && !gb.solid && ga.mesh == gb.mesh && b.distance - a.distance < 1e-6 * radius &&
+        if (ga.patch || gb.patch) return ga.patch && gb.patch && ga.mesh == gb.mesh && b.distance - a.distance < 1e-8 * extent.radius;
+        return !ga.solid && !gb.solid && ga.mesh == gb.mesh && b.distance - a.distance < 1e-6 * extent.radius &&
                near_edge(a) && near_edge(b);
     }
     /// At one place, but for rounding, in a plane that both share?
     bool in_one_plane(const Hit& a, const Hit& b, const Point& along) const {
         if (!geometries[a.geometry].in_shared_plane() || !geometries[b.geometry].in_shared_plane()) return false;
         const double size = length(a.normal), across = size > 0 ? std::fabs(dot(a.normal, along)) / size : 1;
-        return std::fabs(a.distance - b.distance) * across < 1e-6 * radius;
+        return std::fabs(a.distance - b.distance) * across < 1e-6 * extent.radius;
     }
     /// What was added last lies over what shares its plane, and hides what is behind.
     void order_in_planes(std::vector<Hit>& hits, const Point& along) const {
@@ -188,6 +187,7 @@ struct EmbreeScene::State {
         rethrow(query);
         note(&open, 1);
         if (r.tfar < 0) return 0;
+        for (Hit& h : hits) to_half(h);
         tidy(hits);
         double light = 1;
         for (const Hit& h : hits) light *= lets_through(geometries[h.geometry], shadows);

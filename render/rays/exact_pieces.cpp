@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "batch/batch_kernel.h"
+#include "release.h"
 
 namespace isoparm {
 namespace {
@@ -99,7 +100,7 @@ std::unique_ptr<ExactPiece> ExactPieces::make(const Box& box, std::uint32_t cell
         set(*piece, model, {largest(&Polynomial::Rest::f), largest(&Polynomial::Rest::u), largest(&Polynomial::Rest::v)});
     }
     if (good(*piece)) return piece;
-    if (depth > 0 || piece->error.position > kRough * wanted_) piece->c = {};
+    if (depth > 0 || piece->error.position > kRough * wanted_) release(piece->c);
     double error = piece->error.position;
     for (int step = 1; step <= kMostDepth - depth; ++step)
         if ((error *= kPerHalving) <= wanted_) {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#if __has_include(<malloc.h>)
+#include <malloc.h>
+#endif
 
 #include "drawing/drawn.h"
 #include "error.h"
@@ -10,6 +13,7 @@
 #include "picture/palette.h"
 #include "rays/shared_planes.h"
 #include "rays/tubes.h"
+#include "release.h"
 #include "tessellate.h"
 
 namespace isoparm {
@@ -42,15 +46,23 @@ bool inside_out(const Mesh& mesh) {
 /// Glass is clear where nothing else is said: a figure's colour, taken twice by what passes, is mud.
 Color color_of(const SceneObject& o, const Color& otherwise) { return o.color.value_or(o.material.kind == Material::Kind::glass ? Color{1, 1, 1} : otherwise); }
 
+/// What was freed and lies between what is in use still counts as the program's; a mesh leaves a lot of it.
+void give_back_memory() {
+#if defined(__GLIBC__)
+    malloc_trim(0);
+#endif
+}
+
 constexpr double kFrontTolerance = 2e-3;  // of meshes that only tell front from back, in sizes of the scene
 
 class Builder {
 public:
-    Builder(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress, bool exact, int grid)
-        : scene_(scene), objects_(objects), tolerance_(tolerance), progress_(progress), exact_(exact), grid_(grid) {
+    Builder(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress, bool exact, int grid, std::size_t large)
+        : scene_(scene), objects_(objects), tolerance_(tolerance), progress_(progress), exact_(exact), grid_(grid), large_(large) {
         const Bounds box = bounding_box(scene);
         size_ = box.diagonal() > 0 ? box.diagonal() : 1;
-        result_.embree = std::make_unique<EmbreeScene>(0.5 * (box.low + box.high));
+        centre_ = 0.5 * (box.low + box.high);
+        result_.embree = std::make_unique<EmbreeScene>(centre_);
         // Room for the rounding to float32, half a unit in the last place of each coordinate about the centre; a
         // tolerance below that cannot be kept, and certified_error will say so.
         const double float_error = 0x1.00001p-24 * 0.5 * size_;
@@ -94,7 +106,8 @@ private:
 
     void add_surface(const SceneObject& o, std::size_t objects) {
         const Surface& surface = surface_of(scene_, o);
-        const Mesh& mesh = mesh_of(surface, objects);
+        const Known& known = mesh_of(surface, objects);
+        const Mesh& mesh = *known.mesh;
         Thing thing;
         thing.front = color_of(o, surface_color(surfaces_++));
         // Both sides of a translucent sheet look alike, so that it keeps its colour where several lie over each other.
@@ -110,11 +123,13 @@ private:
             if (!o.back) thing.back = thing.front;
         }
         thing.mesh = &mesh;
-        thing.inside_out = inside_out(mesh);
+        thing.inside_out = known.inside_out;
         if (o.opacity > 0) {
-            if (!exact_) result_.embree->add_mesh(mesh, opacity_of(thing));
+            if (known.quads) result_.embree->add_quads(*known.quads, opacity_of(thing));
+            else if (!exact_) result_.embree->add_mesh(mesh, opacity_of(thing));
             for (const MeshPart& part : mesh.parts) {
                 thing.part = &part;
+                if (known.quads) thing.quads = &(*known.quads)[std::size_t(&part - mesh.parts.data())];
                 thing.patch = &surface.patches[part.member].patch;
                 thing.error = grid_ > 0 ? errors_[&surface][std::size_t(&part - mesh.parts.data())] : part.certified_error;
                 result_.things.push_back(thing);
@@ -142,10 +157,30 @@ private:
         thing.part = nullptr;
     }
 
-    const Mesh& mesh_of(const Surface& surface, std::size_t objects) {
-        const Mesh*& known = mesh_of_[&surface];
-        if (known) return *known;
-        if (grid_ > 0) return *(known = &grid_of(surface));
+    struct Known {
+        const Mesh* mesh = nullptr;
+        bool inside_out = false;
+        const std::vector<QuadPart>* quads = nullptr;
+    };
+    const Known& mesh_of(const Surface& surface, std::size_t objects) {
+        Known& known = mesh_of_[&surface];
+        if (known.mesh) return known;
+        Mesh& mesh = grid_ > 0 ? grid_of(surface) : tessellated(surface, objects);
+        known = {&mesh, inside_out(mesh), result_.triangles > large_ ? &to_quads(mesh) : nullptr};
+        return known;
+    }
+
+    /// Patch by patch, so that there is never all of it twice. The mesh loses its vertices and triangles.
+    const std::vector<QuadPart>& to_quads(Mesh& mesh) {
+        std::vector<QuadPart>& quads = result_.quads.emplace_back();
+        quads.reserve(mesh.parts.size());
+        for (MeshPart& part : mesh.parts) quads.emplace_back(mesh, part, centre_);
+        release(mesh.positions);
+        give_back_memory();
+        return quads;
+    }
+
+    Mesh& tessellated(const Surface& surface, std::size_t objects) {
         TessellationOptions options;
         options.tolerance = mesh_tolerance_;
         options.study = false;
@@ -161,11 +196,11 @@ private:
             result_.certified_error = std::max(result_.certified_error, t.certified_error);
             result_.triangles += t.mesh.triangle_count();
         }
-        return *(known = &result_.meshes.emplace_back(std::move(t.mesh)));
+        return result_.meshes.emplace_back(std::move(t.mesh));
     }
 
     /// Errors that are seen, where others have proved ones.
-    const Mesh& grid_of(const Surface& surface) {
+    Mesh& grid_of(const Surface& surface) {
         GridMesh grid = grid_mesh(surface.patches, static_cast<std::uint32_t>(grid_), join_tolerance(1e-4 * size_, size_));
         for (std::size_t k = 0; k < grid.mesh.parts.size(); ++k) errors_[&surface].push_back(grid.sampled_error[k]);
         result_.certified_error = HUGE_VAL;
@@ -245,8 +280,10 @@ private:
     TracedScene result_;
     bool exact_;
     int grid_;
+    std::size_t large_;
+    Point centre_;
     std::uint32_t group_ = 0;
-    std::map<const Surface*, const Mesh*> mesh_of_;
+    std::map<const Surface*, Known> mesh_of_;
     std::map<const Surface*, std::vector<double>> errors_;  // of grids
     std::map<const Patch*, const ExactPatch*> exact_of_;
     std::size_t done_ = 0, surfaces_ = 0;
@@ -259,8 +296,27 @@ TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::
     return build_traced_scene(scene, drawn_objects(scene), tolerance, progress, exact);
 }
 TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress,
-                               bool exact, int grid) {
-    return Builder(scene, objects, tolerance, progress, exact, grid).run();
+                               bool exact, int grid, std::size_t large) {
+    return Builder(scene, objects, tolerance, progress, exact, grid, large).run();
+}
+
+std::array<Point, 3> corners_of(const Thing& thing, std::uint32_t primitive) {
+    if (thing.quads) {
+        const auto [a, b, c] = thing.quads->corners(primitive);
+        return {thing.quads->vertices()[a], thing.quads->vertices()[b], thing.quads->vertices()[c]};
+    }
+    const auto at = [&](std::uint32_t corner) { return thing.mesh->positions[thing.part->vertex[corner]]; };
+    const auto [a, b, c] = thing.part->triangles[primitive];
+    return {at(a), at(b), at(c)};
+}
+
+std::array<Vec2, 3> parameters_of(const Thing& thing, std::uint32_t primitive) {
+    if (thing.quads) {
+        const auto [a, b, c] = thing.quads->corners(primitive);
+        return {thing.quads->uv(a), thing.quads->uv(b), thing.quads->uv(c)};
+    }
+    const auto [a, b, c] = thing.part->triangles[primitive];
+    return {thing.part->uv[a], thing.part->uv[b], thing.part->uv[c]};
 }
 
 }  // namespace isoparm

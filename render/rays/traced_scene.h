@@ -26,7 +26,13 @@ struct Thing {
     const Patch* patch = nullptr;
     const Mesh* mesh = nullptr;
     const MeshPart* part = nullptr;
+    const QuadPart* quads = nullptr;  // of a large mesh: it has the triangles and vertices, which mesh and part then have not
 };
+/// The triangle that was hit.
+std::array<Point, 3> corners_of(const Thing& thing, std::uint32_t primitive);
+std::array<Vec2, 3> parameters_of(const Thing& thing, std::uint32_t primitive);
+/// Meshes that take the scene above so many triangles are large, by default.
+inline constexpr std::size_t kLargeScene = 1'000'000;
 
 /// A piece of a tube, or a ball: it lies within the convex hull of balls about the points.
 struct Solid {
@@ -36,6 +42,7 @@ struct Solid {
 
 struct TracedScene {
     std::deque<Mesh> meshes;
+    std::deque<std::vector<QuadPart>> quads;  // of large ones
     std::deque<ExactPatch> patches;
     std::vector<Thing> things;  // by the number of the geometry
     std::vector<Solid> solids;  // of all tubes and balls
@@ -49,8 +56,8 @@ struct TracedScene {
 /// meshes, coarse ones, only tell which side is the front.
 TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::function<void(double)>& progress, bool exact = false);
 /// Only some objects of the scene. `grid`: not 0 where patches are meshed by grids of so many cells each way (grid_mesh.h), of whose error nothing is proved: then
-/// certified_error is infinite.
+/// certified_error is infinite. `large`: meshes with which the scene has more triangles than that are kept as quads, in half of the memory (quad_part.h).
 TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress,
-                               bool exact = false, int grid = 0);
+                               bool exact = false, int grid = 0, std::size_t large = kLargeScene);
 
 }  // namespace isoparm
