@@ -13,7 +13,7 @@ namespace isoparm {
 namespace {
 
 // What a place costs. Nothing may lie outside or on another label if there is any other place.
-constexpr double kOutside = 1000, kOnLabel = 300, kOnLine = 1.3, kWrongSide = 2, kFar = 1.0, kNextAnchor = 0.5,
+constexpr double kOutside = 1000, kOnLabel = 300, kOnLine = 1.3, kMarkOnLine = 5, kWrongSide = 2, kFar = 1.0, kNextAnchor = 0.5,
                  kHidden = 6, kLeader = 6;
 constexpr double kLeaderFrom = 1.5 * 0.66;  // from what a label names, in ems; a letter is 0.66 high
 constexpr double kNear[] = {0.0, 1.0, 2.2}, kAway[] = {4.0, 6.0, 9.0};  // distances; at the latter always with leaders
@@ -71,7 +71,7 @@ public:
         const MarkRequest::Place* best = nullptr;
         double least = INFINITY;
         for (const MarkRequest::Place& p : request.places)
-            if (const double cost = p.cost + cost_of(p.at, p.at.text.size); cost < least) least = cost, best = &p;
+            if (const double cost = p.cost + cost_of(p.at, p.at.text.size, kMarkOnLine); cost < least) least = cost, best = &p;
         taken_.push_back(grown(best->at, 0.12 * best->at.text.size));
         return best->at;
     }
@@ -109,7 +109,7 @@ private:
                            anchor.gap + (0.22 + 0.45 * far) * request.size);
     }
     double cost_of(const TextPlace& t, const LabelRequest& request, const Anchor& anchor, int side, double far) const {
-        double cost = cost_of(t, request.size) + kFar * far + kHidden * (1 - anchor.seen);
+        double cost = cost_of(t, request.size, kOnLine) + kFar * far + kHidden * (1 - anchor.seen);
         const double away = std::hypot(anchor.away.x, anchor.away.y);
         if (side < 8 && away > 0) {
             const auto [x, y] = direction(side);
@@ -118,7 +118,7 @@ private:
         return cost;
     }
     /// Of what a text covers.
-    double cost_of(const TextPlace& t, double size) const {
+    double cost_of(const TextPlace& t, double size, double on_line) const {
         const Box box = grown(t, 0.1 * size);
         double cost = kOutside * (1 - common(box, picture_).area() / box.area());
         for (const Box& other : taken_)
@@ -128,7 +128,7 @@ private:
             const double in = 0.1 * size + o.radius - distance_to(box, o.at);
             if (in > 0) covered += std::min(1.0, in / (0.1 * size));
         }
-        return cost + kOnLine * covered;
+        return cost + on_line * covered;
     }
 
     const std::vector<Obstacle>& obstacles_;

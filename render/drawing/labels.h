@@ -36,7 +36,7 @@ struct TextPlace {
 struct MarkRequest {
     struct Place {
         TextPlace at;
-        double cost = 0;  // the lower, the better; to cover a point of a line is 1.3
+        double cost = 0;  // the lower, the better; to cover a point of a line, or a ball, is 5
     };
     std::vector<Place> places;
     Color color;

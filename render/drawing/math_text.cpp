@@ -47,8 +47,7 @@ private:
 
     /// Nothing before it: where a formula begins or has ended.
     void begin() {
-        join(MathClass::none);
-        last_ = MathClass::none, written_ = 0;
+        join(MathClass::none), last_ = MathClass::none, written_ = 0;
     }
     /// The space between what was put last and what comes now. Scripts have none.
     void join(MathClass now) {
@@ -59,8 +58,7 @@ private:
         }
         now = math_class_behind(last_, now);
         if (now == MathClass::none) return;
-        const double more = space_between(last_, now) - written_;
-        before_ = std::max(0.0, more);
+        before_ = std::max(0.0, space_between(last_, now) - written_);
         if (now == MathClass::binary) binary_ = before_ > 0 ? runs_.size() : std::string::npos;
         last_ = now, written_ = 0;
     }
