@@ -1,9 +1,9 @@
 // math_text_test.cpp -- space between the signs of formulas, and roots.
-#include "math_text.h"
+#include "drawing/math_text.h"
 
 #include <gtest/gtest.h>
 
-#include "text_cairo.h"
+#include "drawing/text_cairo.h"
 
 namespace isoparm {
 namespace {
