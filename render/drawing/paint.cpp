@@ -4,21 +4,39 @@
 #include <array>
 
 #include "drawing/text_cairo.h"
+#include "picture/palette.h"
 
 namespace isoparm {
 namespace {
 
-/// (left, top) is the pixel of what `c` was made for at the image's corner.
-void add(const Coverage& c, const Vec3<double>& color, double opacity, int left, int top, Image& image) {
+/// use(how much of it is covered, the pixel); (left, top) is the pixel of what `c` was made for at the image's corner.
+template <class Use> void each_covered(const Coverage& c, int left, int top, Image& image, Use use) {
     const int dx = c.x0 - left, dy = c.y0 - top;
     for (int y = std::max(0, -dy); y < std::min(c.height, image.height - dy); ++y)
-        for (int x = std::max(0, -dx); x < std::min(c.width, image.width - dx); ++x) {
-            const double a = opacity * c.part[static_cast<std::size_t>(y) * c.width + x] / 255;
-            if (a == 0) continue;
-            float* out = image.at(dx + x, dy + y);
-            for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(a * color[k] + (1 - a) * out[k]);
-            out[3] = static_cast<float>(a + (1 - a) * out[3]);
+        for (int x = std::max(0, -dx); x < std::min(c.width, image.width - dx); ++x)
+            if (const auto part = c.part[static_cast<std::size_t>(y) * c.width + x]) use(part / 255.0, image.at(dx + x, dy + y));
+}
+
+void add(const Coverage& c, const Vec3<double>& color, double opacity, int left, int top, Image& image) {
+    each_covered(c, left, top, image, [&](double covered, float* out) {
+        const double a = opacity * covered;
+        for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(a * color[k] + (1 - a) * out[k]);
+        out[3] = static_cast<float>(a + (1 - a) * out[3]);
+    });
+}
+
+/// As add(), but from what is there to the letter by how bright it looks, as programs that show PDF and SVG do it: in linear light the rims of dark letters on white paper would be so bright that
+/// they look thin.
+void add_letters(const Coverage& c, const Vec3<double>& color, double opacity, int left, int top, Image& image) {
+    each_covered(c, left, top, image, [&](double covered, float* out) {
+        const double a = opacity * covered, alpha = out[3];
+        for (int k = 0; k < 3; ++k) {
+            const double there = alpha > 0 ? std::max(0.0, out[k] / alpha) : 0, letter = opacity * color[k] + (1 - opacity) * there;
+            const double seen = covered == 1 ? letter : linear_from_srgb(srgb_from_linear(there) + covered * (srgb_from_linear(letter) - srgb_from_linear(there)));
+            out[k] = static_cast<float>(alpha * seen + (1 - alpha) * a * color[k]);
         }
+        out[3] = static_cast<float>(a + (1 - a) * alpha);
+    });
 }
 
 /// The pixels of an area of `from` put at (x,y) of `to`, as far as both have them.
@@ -37,7 +55,7 @@ void paint(const Drawing& drawing, int width, int height, int left, int top, Ima
             [&](const auto& shape) {
                 if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Text>) {
                     if (shape.halo > 0) add(coverage(shape, shape.halo, width, height), shape.rim, halo_opacity(item.opacity), left, top, image);
-                    add(coverage(shape, 0, width, height), item.color, item.opacity, left, top, image);
+                    add_letters(coverage(shape, 0, width, height), item.color, item.opacity, left, top, image);
                 } else {
                     add(coverage(shape, width, height), item.color, item.opacity, left, top, image);
                 }
