@@ -1,6 +1,7 @@
 // rays.cpp -- primary rays of the renderer beside bare Embree on the same mesh, hits turned into points of the exact
 // surface, and complete pictures.
 #include <algorithm>
+#include <bit>
 #include <memory>
 #include <stdexcept>
 
@@ -32,6 +33,7 @@ struct View {
     TracedScene traced, exact;
     Camera camera;
     std::vector<Ray> rays;  // the samples of one pixel after those of another, as the renderer traces them
+    std::vector<RayLanes> lanes;  // the same in packets, as it makes them
     std::unique_ptr<BareEmbree> robust, fast;
 
     explicit View(const std::string& name)
@@ -48,6 +50,8 @@ struct View {
                     rays.push_back(camera.ray(x + 0.5 + at.x, y + 0.5 + at.y));
                 }
             }
+        lanes.resize(rays.size() / RayLanes::lanes);
+        for (std::size_t k = 0; k < rays.size(); ++k) lanes[k / RayLanes::lanes].set(static_cast<int>(k % RayLanes::lanes), rays[k]);
         const Point centre = 0.5 * (box.low + box.high);
         robust = std::make_unique<BareEmbree>(traced.meshes.at(0), centre, rays, true);
         fast = std::make_unique<BareEmbree>(traced.meshes.at(0), centre, rays, false);
@@ -57,16 +61,28 @@ struct View {
     /// use(rays, hits, n) for the n rays of each packet that hit; their number.
     template <class Use> std::size_t intersect(Use use) const { return intersect(traced, use); }
     template <class Use> std::size_t intersect(const TracedScene& what, Use use) const {
+        HitLanes met;
         Hit hits[EmbreeScene::packet];
         Ray hitting[EmbreeScene::packet];
         std::size_t found = 0;
-        for (std::size_t k = 0; k < rays.size(); k += EmbreeScene::packet) {
-            what.embree->intersect(&rays[k], EmbreeScene::packet, hits);
+        for (const RayLanes& packet : lanes) {
+            const RayLanes made = packet;
+            what.embree->intersect(made, EmbreeScene::packet, met);
             int n = 0;
-            for (int i = 0; i < EmbreeScene::packet; ++i)
-                if (hits[i].found()) hitting[n] = rays[k + i], hits[n++] = hits[i];
+            for (std::uint32_t m = met.found; m; m &= m - 1, ++n) hitting[n] = made[std::countr_zero(m)], hits[n] = met[std::countr_zero(m)];
             use(hitting, hits, n);
             found += static_cast<std::size_t>(n);
+        }
+        return found;
+    }
+    /// As bare Embree's hits, these are counted and left as they are.
+    std::size_t count(const TracedScene& what) const {
+        HitLanes met;
+        std::size_t found = 0;
+        for (const RayLanes& packet : lanes) {
+            const RayLanes rays = packet;  // a copy, as bare Embree's
+            what.embree->intersect(rays, EmbreeScene::packet, met);
+            found += static_cast<std::size_t>(std::popcount(met.found));
         }
         return found;
     }
@@ -101,8 +117,8 @@ void add(std::vector<Case>& cases, const std::string& scene, const std::string& 
         "rtcIntersect16, robust", [](const View& v) { return v.robust->intersect_16(); }, true);
     rays("rtcIntersect16, not robust", [](const View& v) { return v.fast->intersect_16(); });
     rays("rtcIntersect1, robust", [](const View& v) { return v.robust->intersect_1(); });
-    rays("EmbreeScene::intersect", [](const View& v) { return v.intersect([](const Ray*, const Hit*, int) {}); });
-    rays("EmbreeScene::intersect, exact", [](const View& v) { return v.intersect(v.exact, [](const Ray*, const Hit*, int) {}); });
+    rays("EmbreeScene::intersect", [](const View& v) { return v.count(v.traced); });
+    rays("EmbreeScene::intersect, exact", [](const View& v) { return v.count(v.exact); });
     rays("... and surfels_at its hits", [](const View& v) {
         double sum = 0;
         const std::size_t found = v.intersect([&](const Ray* rays, const Hit* hits, int n) {

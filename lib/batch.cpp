@@ -76,23 +76,41 @@ void include(Proved& all, double coordinate, const Error3& error) {
     all.error.include(error);
 }
 
-/// Over a grid of boxes, in which quotients have tight ranges.
-Proved prove_rational(const PolynomialCells::Form& form, const Box& cell, int parts) {
-    const auto part = [parts](const Interval& t, int k) {
-        const auto at = [&](int i) { return i == 0 ? t.lo : i == parts ? t.hi : t.lo + (t.hi - t.lo) * i / parts; };
-        return Interval(at(k), at(k + 1));
-    };
-    Error3 rounding[4];
-    for (int axis = 0; axis < 4; ++axis) rounding[axis] = rounding_of(form[axis], half_width(cell.u), half_width(cell.v));
-    Proved all;
-    for (int k = 0; k < parts * parts; ++k) {
+/// That of `parts` equal parts of t which has number k.
+Interval part_of(const Interval& t, int parts, int k) {
+    const auto at = [&](int i) { return i == 0 ? t.lo : i == parts ? t.hi : t.lo + (t.hi - t.lo) * i / parts; };
+    return Interval(at(k), at(k + 1));
+}
+
+/// Of a quotient that is centred in the middle of a cell, over boxes in it, in which quotients have tight ranges.
+class QuotientProof {
+public:
+    QuotientProof(const PolynomialCells::Form& form, const Box& cell) : form_(form), u_(mid(cell.u)), v_(mid(cell.v)) {
+        for (std::size_t axis = 0; axis < 4; ++axis) rounding_[axis] = rounding_of(form[axis], half_width(cell.u), half_width(cell.v));
+    }
+    Proved over(const Box& part) const {
         Jets x[4];
-        for (int axis = 0; axis < 4; ++axis)
-            form[axis].jets<1>(mid(cell.u), mid(cell.v), part(cell.u, k / parts), part(cell.v, k % parts), nullptr, &x[axis]);
+        for (std::size_t axis = 0; axis < 4; ++axis) form_[axis].jets<1>(u_, v_, part.u, part.v, nullptr, &x[axis]);
+        Proved all;
         for (int axis = 0; axis < 3; ++axis) {
             const Jets q = x[axis] / x[3];
-            include(all, mag(q.c[0]), rounding_of_quotient(x[axis], rounding[axis], x[3], rounding[3], q));
+            include(all, mag(q.c[0]), rounding_of_quotient(x[axis], rounding_[axis], x[3], rounding_[3], q));
         }
+        return all;
+    }
+
+private:
+    const PolynomialCells::Form& form_;
+    double u_, v_;
+    Error3 rounding_[4];
+};
+
+Proved prove_rational(const PolynomialCells::Form& form, const Box& cell, int parts) {
+    const QuotientProof proof(form, cell);
+    Proved all;
+    for (int k = 0; k < parts * parts; ++k) {
+        const Proved one = proof.over({part_of(cell.u, parts, k / parts), part_of(cell.v, parts, k % parts)});
+        include(all, one.largest, one.error);
     }
     return all;
 }
@@ -149,6 +167,18 @@ template <class Use> void each_run(const std::uint32_t* cell, std::size_t n, Use
 FrameError frame_error(const std::vector<Polynomial>& form, const Interval& u, const Interval& v, int parts) {
     const Error3 e = prove(form, {u, v}, parts).error;
     return {e.s, e.u, e.v};
+}
+
+std::vector<FrameError> quotient_errors(const std::vector<Polynomial>& form, const Interval& u, const Interval& v, int parts, double& largest) {
+    const QuotientProof proof(form, {u, v});
+    std::vector<FrameError> errors;
+    largest = 0;
+    for (int k = 0; k < parts * parts; ++k) {
+        const auto [coordinate, e] = proof.over({part_of(u, parts, k / parts), part_of(v, parts, k % parts)});
+        errors.push_back({e.s, e.u, e.v});
+        if (std::isfinite(e.s)) largest = std::max(largest, coordinate);
+    }
+    return errors;
 }
 
 const char* to_text(Isa isa) { return isa == Isa::avx512 ? "avx512" : isa == Isa::avx2 ? "avx2" : "baseline"; }

@@ -38,6 +38,9 @@ struct FrameError {
 /// over a grid of parts x parts boxes. Infinite where that has no bound.
 FrameError frame_error(const std::vector<Polynomial>& form, const Interval& u, const Interval& v, int parts);
 
+/// Of a quotient centred in the middle of a cell, for each of parts x parts boxes in it, u-major; `largest`: coordinate of the surface, where that is known.
+std::vector<FrameError> quotient_errors(const std::vector<Polynomial>& form, const Interval& u, const Interval& v, int parts, double& largest);
+
 /// A surface that is polynomial, or rational with a positive denominator, in each cell of a grid. Immutable; safe from every thread.
 class PolynomialCells {
 public:

@@ -85,7 +85,8 @@ public:
     void frames(std::size_t n, const double* u, const double* v, PointFrame* out) const { impl_->frames(n, u, v, out); }
     /// The fast way to many positions and first derivatives, at (u[k], v[k]), or at (u[k], v[0]) when v is one number: a row, which is
     /// several times faster still. Where the surface is polynomial or rational of degree <= 7 between its breaks and
-    /// PolynomialCells::accuracy can be proved, each coordinate is that close to the exact surface; elsewhere it is frame()'s bit for bit.
+    /// PolynomialCells::accuracy can be proved, if only away from where a denominator vanishes, each coordinate is that close to the exact
+    /// surface; elsewhere it is frame()'s bit for bit.
     /// The same bits for every instruction set, for rows and for points, and however a batch is cut in parts. Parameters lie in the
     /// domain; all arrays have u's size, else throws std::invalid_argument. No allocation for polynomial and rational surfaces. This
     /// machine must run `isa`; there is no reason to give it but to measure.

@@ -7,7 +7,9 @@
 // A formula that is made of cells between its breaks picks its cell by cell_of(breaks, u).
 #pragma once
 #include <algorithm>
+#include <cstdint>
 
+#include "batch/batch_quotient.h"
 #include "patch.h"
 
 namespace isoparm {
@@ -34,6 +36,8 @@ public:
             for (std::size_t j = 0; j + 1 < edges_v_.size(); ++j)
                 exact_.push_back(exact_form({edges_u_[i], edges_u_[i + 1]}, {edges_v_[j], edges_v_[j + 1]}));
         batch_ = batch_cells();
+        if (!batch_.exist() && exact_.size() == 1 && rect_.u0 == 0 && rect_.u1 == 1 && rect_.v0 == 0 && rect_.v1 == 1)
+            if (const auto form = exact_cell(0, 0); form.size() == 4) quotient_ = QuotientCell(form);
     }
 
     Domain domain() const override { return F::domain; }
@@ -66,19 +70,7 @@ public:
     }
     void frame_arrays(Isa isa, std::span<const double> u, std::span<const double> v, const FrameArrays& out) const override {
         if (batch_.exist()) return batch_.frames(isa, u, v, out);
-        constexpr std::size_t size = 64;
-        PointFrame block[size];
-        double row[size];
-        if (v.size() == 1) std::fill_n(row, size, v[0]);
-        for (std::size_t k = 0; k < u.size(); k += size) {
-            const std::size_t count = std::min(size, u.size() - k);
-            frames(count, u.data() + k, v.size() == 1 ? row : v.data() + k, block);
-            for (std::size_t i = 0; i < count; ++i)
-                for (int axis = 0; axis < 3; ++axis) {
-                    const auto& c = block[i][axis].c;
-                    out.position[axis][k + i] = c[0], out.du[axis][k + i] = c[1], out.dv[axis][k + i] = c[2];
-                }
-        }
+        for (std::size_t k = 0; k < u.size(); k += kBlock) some_frames(isa, u.subspan(k, std::min(kBlock, u.size() - k)), v.size() == 1 ? v : v.subspan(k), k, out);
     }
 
     Enclosure enclose(const Box& box) const override {
@@ -194,6 +186,37 @@ private:
         if constexpr (F::domain == Domain::quad) return what(x, y);
         else return what(x, y, Polynomial(1) - x - y);
     }
+    /// At most kBlock points, into `out` from `first` on: by the quotient where it is proved, else by the formula.
+    void some_frames(Isa isa, std::span<const double> u, std::span<const double> v, std::size_t first, const FrameArrays& out) const {
+        double* to[9];
+        for (std::size_t axis = 0; axis < 3; ++axis) to[axis] = &out.position[axis][first], to[3 + axis] = &out.du[axis][first], to[6 + axis] = &out.dv[axis][first];
+        double us[kBlock], vs[kBlock], some[9][kBlock];
+        std::uint8_t place[2][kBlock];  // of what the formula gets, and the quotient
+        std::size_t count[2] = {0, 0};
+        const bool row = v.size() == 1;
+        for (std::size_t k = 0; k < u.size(); ++k) {
+            const bool by = quotient_.exists() && quotient_.covers(u[k], row ? v[0] : v[k]);
+            place[by][count[by]++] = static_cast<std::uint8_t>(k);
+        }
+        if (count[1] == u.size() && !row) return quotient_.frames(isa, u.size(), u.data(), v.data(), to);
+        const auto gather = [&](bool by) {
+            for (std::size_t i = 0; i < count[by]; ++i) us[i] = u[place[by][i]], vs[i] = v[row ? 0 : place[by][i]];
+        };
+        if (count[1] > 0) {
+            double* from[9];
+            for (std::size_t i = 0; i < 9; ++i) from[i] = some[i];
+            gather(true);
+            quotient_.frames(isa, count[1], us, vs, from);
+            for (std::size_t i = 0; i < 9; ++i)
+                for (std::size_t k = 0; k < count[1]; ++k) to[i][place[1][k]] = some[i][k];
+        }
+        if (count[0] == 0) return;
+        PointFrame block[kBlock];
+        gather(false);
+        frames(count[0], us, vs, block);
+        for (std::size_t k = 0; k < count[0]; ++k)
+            for (std::size_t i = 0; i < 9; ++i) to[i][place[0][k]] = block[k][static_cast<int>(i % 3)].c[i / 3];
+    }
     Vec3<Polynomial> exact_form(const Interval& u, const Interval& v) const { return on_polynomials(u, v, f_); }
 
     PolynomialCells batch_cells() const {
@@ -246,11 +269,13 @@ private:
         return e;
     }
 
+    static constexpr std::size_t kBlock = 64;
     F f_;
     Rect rect_;
     std::vector<double> breaks_u_, breaks_v_, edges_u_, edges_v_;
     std::vector<Vec3<Polynomial>> exact_;  // per cell, where the surface is polynomial there
     PolynomialCells batch_;
+    QuotientCell quotient_;  // where there are no such cells
 };
 
 template <class F> Patch make_patch(F f) { return Patch(std::make_shared<PatchModel<F>>(std::move(f))); }

@@ -6,11 +6,14 @@
 #include <bit>
 #include <cmath>
 
+#include "batch/batch_quotient.h"
+#include "curves/bezier.h"
 #include "curves/bezier_cells.h"
 #include "curves/line.h"
 #include "error.h"
 #include "patches/cone.h"
 #include "patches/coons.h"
+#include "patches/side_vertex.h"
 #include "patches/tensor_bezier.h"
 #include "patches/tensor_bezier_points.h"
 #include "run_program.h"
@@ -200,6 +203,45 @@ TEST(Batch, WhatCannotBeProvedIsLeftToTheFormula) {
     EXPECT_FALSE(PolynomialCells({0, 1}, {0, 1}, {{u * Polynomial(Interval::all()), u, v}}).exist()) << "an unknown coefficient";
     EXPECT_TRUE(PolynomialCells({0, 1}, {0, 1}, {{u, v, u, u + Polynomial(1)}}).exist());
     EXPECT_FALSE(PolynomialCells({0, 1}, {0, 1}, {{u, v, u, u}}).exist()) << "a denominator that vanishes";
+}
+
+/// The enclosure of the formula is the reference; near the vertices, where the denominator vanishes, the formula itself has to answer.
+TEST(Batch, AQuotientIsTheSurfaceButForItsVertices) {
+    const Point A{2, 0, 0}, B{-1, 1.7, 0.3}, C{-1, -1.7, 0};
+    const Patch patch = make_side_vertex({make_bezier({B, {-1.1, 0.8, 1.5}, {-1.1, -0.8, 1.2}, C}), make_bezier({C, {0, -1.4, 1.5}, {1.1, -0.6, 0.7}, A}), make_bezier({A, {1.2, 0.6, 1.5}, {0.1, 1.3, 2}, B})},
+                                         Function::polynomial({0, 0, 1}));
+    const auto form = patch.exact_cell(0, 0);
+    ASSERT_EQ(form.size(), 4u);
+    const QuotientCell cell(form);
+    auto wrong = form, vague = form;
+    wrong[1] = wrong[1] + Polynomial(1e-9), vague[1] = vague[1] * Polynomial(Interval(1, 1 + 1e-9));
+    const QuotientCell other(wrong);
+    ASSERT_TRUE(cell.exists() && other.exists());
+    EXPECT_FALSE(QuotientCell(vague).exists()) << "a coefficient known to nine digits";
+    for (const Vec2& vertex : {Vec2{0, 0}, {1, 0}, {0, 1}, {1e-3, 1e-3}, {0.999, 5e-4}}) EXPECT_FALSE(cell.covers(vertex.x, vertex.y));
+
+    Random r(8);
+    std::size_t by_quotient = 0, worse = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const double near = i % 4 == 0 ? 0.1 : 1, a = r.number(), b = r.number(), u = near * std::min(a, b), v = near * (1 - std::max(a, b));
+        Result x(1);
+        const double us[] = {u}, vs[] = {v};
+        patch.frames(us, vs, x.arrays());
+        if (!cell.covers(u, v)) {
+            const PointFrame f = patch.frame(u, v);
+            for (int k = 0; k < 9; ++k) EXPECT_EQ(std::bit_cast<std::uint64_t>(x.at(k, 0)), std::bit_cast<std::uint64_t>(f[k % 3].c[k / 3]));
+            continue;
+        }
+        ++by_quotient;
+        const auto place = patch.enclose_points({Interval(u), Interval(v)});
+        double out[9], *rows[9];
+        for (int k = 0; k < 9; ++k) rows[k] = &out[k];
+        other.frames(Isa::baseline, 1, us, vs, rows);
+        for (int axis = 0; axis < 3; ++axis) EXPECT_LE(mag(place[axis] - Interval(x.at(axis, 0))), 3 * PolynomialCells::accuracy);  // the surface is about 2 wide
+        worse += mag(place[1] - Interval(out[1])) > 3 * PolynomialCells::accuracy;
+    }
+    EXPECT_GT(by_quotient, 1400u);
+    EXPECT_EQ(worse, by_quotient) << "a coefficient that is off by 1e-9 is seen";
 }
 
 TEST(Batch, PolesAndApexesHaveNoNaN) {

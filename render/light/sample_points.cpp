@@ -55,28 +55,23 @@ ISOPARM_INLINE void points_loop(Points& p) {
     }
 }
 
-struct Directions {
-    alignas(64) double x[kLanes];  // pixels aside, and then of the direction
-    double y[kLanes], z[kLanes];
-};
-
-/// Camera::ray() of perspective cameras.
-ISOPARM_INLINE void directions_loop(const Point& right, const Point& up, const Point& forward, double scale, Directions& d) {
+/// Camera::ray() of perspective cameras, of directions that are pixels aside.
+ISOPARM_INLINE void directions_loop(const Point& right, const Point& up, const Point& forward, double scale, RayLanes& d) {
     for (int i = 0; i < kLanes; ++i) {
-        const double a = scale * d.x[i], b = scale * d.y[i];
+        const double a = scale * d.direction[0][i], b = scale * d.direction[1][i];
         const double x = forward.x + (a * right.x - b * up.x), y = forward.y + (a * right.y - b * up.y), z = forward.z + (a * right.z - b * up.z);
         const double size = std::sqrt(x * x + y * y + z * z);
-        d.x[i] = x / size, d.y[i] = y / size, d.z[i] = z / size;
+        d.direction[0][i] = x / size, d.direction[1][i] = y / size, d.direction[2][i] = z / size;
     }
 }
 
 void points(Points& p) { points_loop(p); }
-void directions(const Point& right, const Point& up, const Point& forward, double scale, Directions& d) { directions_loop(right, up, forward, scale, d); }
+void directions(const Point& right, const Point& up, const Point& forward, double scale, RayLanes& d) { directions_loop(right, up, forward, scale, d); }
 #ifdef ISOPARM_ISA_LOOPS
 ISOPARM_FOR_AVX2 void kernel_avx2_points(Points& p) { points_loop(p); }
 ISOPARM_FOR_AVX512 void kernel_avx512_points(Points& p) { points_loop(p); }
-ISOPARM_FOR_AVX2 void kernel_avx2_directions(const Point& right, const Point& up, const Point& forward, double scale, Directions& d) { directions_loop(right, up, forward, scale, d); }
-ISOPARM_FOR_AVX512 void kernel_avx512_directions(const Point& right, const Point& up, const Point& forward, double scale, Directions& d) { directions_loop(right, up, forward, scale, d); }
+ISOPARM_FOR_AVX2 void kernel_avx2_directions(const Point& right, const Point& up, const Point& forward, double scale, RayLanes& d) { directions_loop(right, up, forward, scale, d); }
+ISOPARM_FOR_AVX512 void kernel_avx512_directions(const Point& right, const Point& up, const Point& forward, double scale, RayLanes& d) { directions_loop(right, up, forward, scale, d); }
 #endif
 
 }  // namespace
@@ -100,22 +95,24 @@ void sample_points(const SampleOf* of, const int* dimension, int n, Vec2* out) {
     for (int i = 0; i < n; ++i) out[i] = {p.x[i], p.y[i]};
 }
 
-void camera_rays(const Camera& camera, const Vec2* at, int n, Ray* out) {
+void camera_rays(const Camera& camera, const Vec2* at, int n, RayLanes& out) {
     if (camera.orthographic) {
-        for (int i = 0; i < n; ++i) out[i] = camera.ray(at[i].x, at[i].y);
+        for (int i = 0; i < kLanes; ++i) out.set(i, camera.ray(at[i < n ? i : 0].x, at[i < n ? i : 0].y));
         return;
     }
-    Directions d{};
-    for (int i = 0; i < n; ++i) d.x[i] = at[i].x - camera.shift.x - 0.5 * camera.width, d.y[i] = at[i].y - camera.shift.y - 0.5 * camera.height;
+    for (int i = 0; i < kLanes; ++i) {
+        const Vec2& p = at[i < n ? i : 0];
+        out.direction[0][i] = p.x - camera.shift.x - 0.5 * camera.width, out.direction[1][i] = p.y - camera.shift.y - 0.5 * camera.height;
+        for (int k = 0; k < 3; ++k) out.origin[k][i] = camera.eye[k];
+    }
     const double scale = 2 * camera.half_height / camera.height;
     switch (chosen_isa()) {
 #ifdef ISOPARM_ISA_LOOPS
-        case Isa::avx512: kernel_avx512_directions(camera.right, camera.up, camera.forward, scale, d); break;
-        case Isa::avx2: kernel_avx2_directions(camera.right, camera.up, camera.forward, scale, d); break;
+        case Isa::avx512: kernel_avx512_directions(camera.right, camera.up, camera.forward, scale, out); break;
+        case Isa::avx2: kernel_avx2_directions(camera.right, camera.up, camera.forward, scale, out); break;
 #endif
-        default: directions(camera.right, camera.up, camera.forward, scale, d);
+        default: directions(camera.right, camera.up, camera.forward, scale, out);
     }
-    for (int i = 0; i < n; ++i) out[i].origin = camera.eye, out[i].direction = {d.x[i], d.y[i], d.z[i]};
 }
 
 }  // namespace isoparm

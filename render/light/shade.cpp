@@ -35,9 +35,11 @@ void FigureLighting::shade(const TracedScene& scene, const Surfel* surfels, int 
     points(sky_dimension, p.at_sky);
     kernel_.directions(studio_, key_, p);
 
-    Ray rays[EmbreeScene::packet];
-    const auto rays_to = [&](const double (*d)[SurfelPacket::lanes]) {
-        for (int i = 0; i < n; ++i) rays[i].origin = surfels[i].origin, rays[i].direction = {d[0][i], d[1][i], d[2][i]};
+    RayLanes rays;
+    for (int i = 0; i < RayLanes::lanes; ++i)
+        for (int k = 0; k < 3; ++k) rays.origin[k][i] = surfels[i < n ? i : 0].origin[k];
+    const auto rays_to = [&](const double (&d)[3][SurfelPacket::lanes]) -> const RayLanes& {
+        for (int k = 0; k < 3; ++k) std::copy_n(d[k], RayLanes::lanes, rays.direction[k]);
         return rays;
     };
     std::uint32_t lit = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <limits>
 #include <thread>
 
@@ -22,7 +23,7 @@ void Tracer::sample(int x, int y, int to, bool counts, const FilmPixel& film, co
         const int first = sum.seen, n = std::min(EmbreeScene::packet, to - first);
         Rgba seen[EmbreeScene::packet];
         if (!empty) {
-            Ray rays[EmbreeScene::packet];
+            RayLanes rays;
             SampleOf of[EmbreeScene::packet];
             Vec2 pixel[EmbreeScene::packet];
             for (int i = 0; i < n; ++i) of[i] = {&sampler, first + i}, pixel[i] = {double(x), double(y)};
@@ -33,7 +34,7 @@ void Tracer::sample(int x, int y, int to, bool counts, const FilmPixel& film, co
     }
 }
 
-void Tracer::rays(const Vec2* pixel, const SampleOf* of, int n, Ray* out) const {
+void Tracer::rays(const Vec2* pixel, const SampleOf* of, int n, RayLanes& out) const {
     constexpr int kFirst[EmbreeScene::packet] = {};
     Vec2 at[EmbreeScene::packet];
     sample_points(of, kFirst, n, at);
@@ -53,7 +54,7 @@ void Tracer::sample_block(int x, int y, Rgba* seen) const {
     static_assert(Coverage::block % 4 == 0);  // blocks of samples lie within those of the coverage
     if (!may_meet(x, y)) return;
     std::array<std::optional<PixelSampler>, EmbreeScene::packet> samplers;
-    Ray rays[EmbreeScene::packet];
+    RayLanes rays;
     SampleOf of[EmbreeScene::packet];
     Vec2 pixel[EmbreeScene::packet];
     const Block size = block();
@@ -97,14 +98,16 @@ Rgba Tracer::finished(Rgba pixel) const {
 
 Rgba Tracer::glance(double x, double y) const {
     const PixelSampler sampler(static_cast<int>(x), static_cast<int>(y), samples_);
-    const Ray ray = camera_.ray(x, y);
+    RayLanes rays;
+    const Vec2 at{x, y};
+    camera_rays(camera_, &at, 1, rays);
     const SampleOf of{&sampler, 0};
     Rgba seen;
-    trace(&ray, &of, 1, &seen);
+    trace(rays, &of, 1, &seen);
     return finished(seen);
 }
 
-void Tracer::trace(const Ray* rays, const SampleOf* of, int n, Rgba* seen) const {
+void Tracer::trace(const RayLanes& rays, const SampleOf* of, int n, Rgba* seen) const {
     Packet met;
     if (scene_.embree->translucent()) {
         std::vector<Hit> hits;
@@ -121,11 +124,16 @@ void Tracer::trace(const Ray* rays, const SampleOf* of, int n, Rgba* seen) const
             }
         }
     } else {
-        Hit hits[EmbreeScene::packet];
+        HitLanes hits;
         scene_.embree->intersect(rays, n, hits);
-        for (int i = 0; i < n; ++i) {
-            if (const auto ground = ground_hit(rays[i], hits[i].distance)) met.add(rays[i], *ground, i, 0);
-            else if (hits[i].found()) met.add(rays[i], hits[i], i, 0);
+        if (ground_) {
+            for (int i = 0; i < n; ++i) {
+                const Hit hit = hits[i];
+                if (const auto ground = ground_hit(rays[i], hit.distance)) met.add(rays[i], *ground, i, 0);
+                else if (hit.found()) met.add(rays[i], hit, i, 0);
+            }
+        } else {
+            for (std::uint32_t m = hits.found; m; m &= m - 1) met.add(rays[std::countr_zero(m)], hits[std::countr_zero(m)], std::countr_zero(m), 0);
         }
     }
     if (met.count > 0) add_light(of, met, seen);

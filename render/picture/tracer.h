@@ -53,7 +53,7 @@ private:
         void add(const Ray& one, const Hit& hit, int number, int of_ray) { by[count] = one, hits[count] = hit, ray[count] = number, layer[count++] = of_ray; }
     };
     /// Through the samples' places in the pixels whose corners are given.
-    void rays(const Vec2* pixel, const SampleOf* of, int n, Ray* out) const;
+    void rays(const Vec2* pixel, const SampleOf* of, int n, RayLanes& out) const;
     Rgba finished(Rgba pixel) const;
     /// What a ray meets of the ground before `end`.
     std::optional<Hit> ground_hit(const Ray& ray, double end) const;
@@ -61,7 +61,7 @@ private:
     void surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const;
     /// May a sample of the pixel be anything but empty?
     bool may_meet(int x, int y) const { return open_ || coverage_.may_meet(x, y); }
-    void trace(const Ray* rays, const SampleOf* of, int n, Rgba* seen) const;
+    void trace(const RayLanes& rays, const SampleOf* of, int n, Rgba* seen) const;
     void add_light(const SampleOf* of, const Packet& met, Rgba* seen) const;
 
     const TracedScene& scene_;

@@ -1,6 +1,8 @@
 #include "rays/embree_scene.h"
 
+#include <algorithm>
 #include <bit>
+#include <iterator>
 
 #include "rays/embree_state.h"
 
@@ -10,24 +12,28 @@ double EmbreeScene::radius() const { return state_->extent.radius; }
 bool EmbreeScene::translucent() const { return state_->translucent; }
 double EmbreeScene::rounding() const { return state_->extent.rounding; }
 
-void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
-    if (n == 0) return;
+Hit HitLanes::operator[](int i) const {
+    if (!(found >> i & 1)) return {};
+    if (exact >> i & 1) return of_patch[i];
+    return {start[i] + static_cast<double>(distance[i]), geometry[i], primitive[i], u[i], v[i], {normal[0][i], normal[1][i], normal[2][i]}, 0};
+}
+
+template <class Rays> void EmbreeScene::trace(const Rays& rays, int n, HitLanes& hits) const {
     const State& s = *state_;
     alignas(64) RTCRayHit16 r;
     alignas(64) int valid[packet];
-    double start[packet];
     RayPacket planes;
-    s.enter(rays, (2u << (n - 1)) - 1, r.ray, start, planes);
+    s.enter(rays, (2u << (n - 1)) - 1, r.ray, hits.start, planes);
     for (int i = 0; i < packet; ++i) {
         valid[i] = i < n ? -1 : 0;
         r.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
-    if (s.patches) std::fill_n(hits, n, Hit{});
+    if (s.patches) std::fill_n(hits.of_patch, n, Hit{});
     bool open[packet] = {};
     QuickRays quick;
     QuickBest best;
-    PatchRays to_patches{&planes, hits, open};
+    PatchRays to_patches{&planes, hits.of_patch, open};
     if (s.patches) s.set_quick(r.ray, planes, quick, to_patches), to_patches.best = &best;
     Query query(true);
     if (s.patches) query.patches = &to_patches;
@@ -37,20 +43,33 @@ void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
     }
     rethrow(query);
     std::uint32_t patch_first = 0;  // lanes that meet a patch first
-    for (unsigned i = 0; i < packet; ++i)
-        if (best.some >> i & 1 && s.geometries[r.hit.geomID[i]].patch) patch_first |= 1u << i;
+    for (std::uint32_t m = best.some; m; m &= m - 1)
+        if (const int i = std::countr_zero(m); s.geometries[r.hit.geomID[i]].patch) patch_first |= 1u << i;
     if (const std::uint32_t again = patch_first ? settle(to_patches, patch_first) : 0) s.trace_again(rays, n, again, query, r, to_patches);
     s.note(open, static_cast<std::uint64_t>(n));
-    for (int i = 0; i < n; ++i) {
-        const std::uint32_t geometry = r.hit.geomID[i];
-        if (geometry == RTC_INVALID_GEOMETRY_ID) {
-            if (!s.patches) hits[i] = Hit{};
-        } else if (s.patches && s.geometries[geometry].patch) hits[i].distance += start[i];
-        else hits[i] = {start[i] + static_cast<double>(r.ray.tfar[i]), geometry, r.hit.primID[i], r.hit.u[i], r.hit.v[i], {r.hit.Ng_x[i], r.hit.Ng_y[i], r.hit.Ng_z[i]}, 0};
+    hits.found = hits.exact = 0;
+    for (unsigned i = 0; i < packet; ++i) hits.found |= std::uint32_t(r.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) << i;
+    if (hits.found == 0) return;
+    const auto keep = [](const auto& from, auto& to) { std::copy(std::begin(from), std::end(from), to); };
+    keep(r.ray.tfar, hits.distance), keep(r.hit.u, hits.u), keep(r.hit.v, hits.v), keep(r.hit.geomID, hits.geometry), keep(r.hit.primID, hits.primitive);
+    keep(r.hit.Ng_x, hits.normal[0]), keep(r.hit.Ng_y, hits.normal[1]), keep(r.hit.Ng_z, hits.normal[2]);
+    for (std::uint32_t m = s.patches ? hits.found : 0; m; m &= m - 1)
+        if (const int i = std::countr_zero(m); s.geometries[hits.geometry[i]].patch) hits.exact |= 1u << i, hits.of_patch[i].distance += hits.start[i];
+    for (std::uint32_t m = s.quads ? hits.found & ~hits.exact : 0; m; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        Hit hit = hits[i];
+        s.to_half(hit);
+        hits.primitive[i] = hit.primitive, hits.u[i] = static_cast<float>(hit.u), hits.v[i] = static_cast<float>(hit.v);
     }
-    if (!s.quads) return;
-    for (int i = 0; i < n; ++i)
-        if (hits[i].found()) s.to_half(hits[i]);
+}
+
+void EmbreeScene::intersect(const RayLanes& rays, int n, HitLanes& hits) const { trace(rays, n, hits); }
+
+void EmbreeScene::intersect(const Ray* rays, int n, Hit* hits) const {
+    if (n == 0) return;
+    HitLanes met;
+    trace(rays, n, met);
+    for (int i = 0; i < n; ++i) hits[i] = met[i];
 }
 
 Hit EmbreeScene::first(const Ray& ray) const {
@@ -107,7 +126,7 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
     for (Hit& h : hits) h.distance += start;
 }
 
-void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, double* result, Shadows shadows) const {
+template <class Rays> void EmbreeScene::shadows(const Rays& rays, int n, std::uint32_t active, double* result, Shadows shadows) const {
     const State& s = *state_;
     std::fill(result, result + n, 1.0);
     if (active == 0) return;
@@ -136,5 +155,8 @@ void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, do
     for (int i = 0; i < n; ++i)
         if (valid[i] && r.tfar[i] < 0) result[i] = 0;
 }
+
+void EmbreeScene::transmittance(const Ray* rays, int n, std::uint32_t active, double* result, Shadows shadows) const { this->shadows(rays, n, active, result, shadows); }
+void EmbreeScene::transmittance(const RayLanes& rays, int n, std::uint32_t active, double* result, Shadows shadows) const { this->shadows(rays, n, active, result, shadows); }
 
 }  // namespace isoparm

@@ -27,6 +27,21 @@ struct Hit {
     bool found() const { return geometry != none; }
 };
 
+/// What the rays of a packet met, in Embree's own numbers: a Hit is made of them one by one.
+struct HitLanes {
+    std::uint32_t found;  // a bit for each ray that met something; nothing else holds of others
+    alignas(64) double start[RayLanes::lanes];
+    alignas(64) float distance[RayLanes::lanes], u[RayLanes::lanes], v[RayLanes::lanes], normal[3][RayLanes::lanes];  // distance: from `start` on
+    std::uint32_t geometry[RayLanes::lanes], primitive[RayLanes::lanes];
+    std::uint32_t exact;  // rays that met a patch itself:
+    union {
+        Hit of_patch[RayLanes::lanes];
+    };
+
+    HitLanes() {}  // intersect() sets what is read
+    Hit operator[](int i) const;
+};
+
 class EmbreeScene {
 public:
     static constexpr int packet = 16;  // rays a call
@@ -66,6 +81,7 @@ public:
 
     /// The nearest hit of each of n <= packet rays; none, of none. Not of a scene that is translucent().
     void intersect(const Ray* rays, int n, Hit* hits) const;
+    void intersect(const RayLanes& rays, int n, HitLanes& hits) const;
     /// The nearest hit of one ray, whatever its opacity.
     Hit first(const Ray& ray) const;
     /// Every hit from the nearest to the first opaque one, in order. A tube or ball that lets light through counts
@@ -75,8 +91,13 @@ public:
     enum class Shadows { light, physical };
     /// The part of light that passes along each of n <= packet rays; 1 where `active` has no bit.
     void transmittance(const Ray* rays, int n, std::uint32_t active, double* result, Shadows shadows = Shadows::light) const;
+    void transmittance(const RayLanes& rays, int n, std::uint32_t active, double* result, Shadows shadows = Shadows::light) const;
 
 private:
+    /// Rays: Ray* or RayLanes.
+    template <class Rays> void trace(const Rays& rays, int n, HitLanes& hits) const;
+    template <class Rays> void shadows(const Rays& rays, int n, std::uint32_t active, double* result, Shadows shadows) const;
+
     struct State;
     std::unique_ptr<State> state_;
 };

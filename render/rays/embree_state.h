@@ -85,6 +85,13 @@ struct EmbreeScene::State {
     /// The same of a packet; lanes that are not active are copies of one that is.
     void enter(const Ray* rays, std::uint32_t active, RTCRay16& r, double* start, RayPacket& planes) const {
         kernel.enter(rays, active, packet, centre, extent.radius, start, {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y, r.dir_z, r.tfar}, patches ? &planes : nullptr);
+        settle_packet(r, planes);
+    }
+    void enter(const RayLanes& rays, std::uint32_t, RTCRay16& r, double* start, RayPacket& planes) const {
+        kernel.enter_lanes(rays, centre, extent.radius, start, {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y, r.dir_z, r.tfar}, patches ? &planes : nullptr);
+        settle_packet(r, planes);
+    }
+    void settle_packet(RTCRay16& r, RayPacket& planes) const {
         if (patches) kernel.planes(packet, planes);
         for (unsigned i = 0; i < packet; ++i) r.tnear[i] = 0, r.time[i] = 0, r.mask[i] = ~0u, r.id[i] = i, r.flags[i] = 0;
     }
@@ -95,7 +102,7 @@ struct EmbreeScene::State {
         to_patches.quick = &quick;
     }
     /// Lanes `again` of a packet, in double.
-    void trace_again(const Ray* rays, int n, std::uint32_t again, Query& query, RTCRayHit16& r, PatchRays& to_patches) const {
+    template <class Rays> void trace_again(const Rays& rays, int n, std::uint32_t again, Query& query, RTCRayHit16& r, PatchRays& to_patches) const {
         alignas(64) int valid[packet];
         alignas(64) RTCRayHit16 fresh;
         double start[packet];

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "batch.h"
-#include "picture/camera.h"
+#include "rays/ray_lanes.h"
 
 namespace isoparm {
 
@@ -92,6 +92,8 @@ struct ExactKernel {
     /// cost float32 its digits. Sets `lanes` of `start`, of `to` and, where given, of origins and directions of `packet`: whole groups. Those that have
     /// no bit in `active`, which is not 0, get the first ray that has one.
     void (*enter)(const Ray* rays, std::uint32_t active, int lanes, const Point& centre, double radius, double* start, const FloatRays& to, RayPacket* packet);
+    /// The same of a packet whose rays are side by side already.
+    void (*enter_lanes)(const RayLanes& rays, const Point& centre, double radius, double* start, const FloatRays& to, RayPacket* packet);
     /// Sets n1 and n2 of the first n lanes.
     void (*planes)(int n, RayPacket& rays);
     /// `border`: rays that pass the border of the leaf within it are not missed.
