@@ -75,6 +75,12 @@ std::vector<std::string> math_names() {
     return names;
 }
 
+std::string character_at(const std::string& text, std::size_t at) {
+    std::size_t n = 1;
+    while (at + n < text.size() && (static_cast<unsigned char>(text[at + n]) & 0xc0) == 0x80) ++n;
+    return text.substr(at, n);
+}
+
 std::string tex_of_symbol(const std::string& character) {
     if (character == "\u2212") return "-";
     if (character == "\u2009") return "\\,";

@@ -6,6 +6,9 @@
 
 namespace isoparm {
 
+/// All bytes (UTF-8) of the character that begins at `at`.
+std::string character_at(const std::string& text, std::size_t at);
+
 /// A character that is set slanted, as variables are, or upright; or an upright word ("sin").
 struct MathSymbol {
     std::string text;

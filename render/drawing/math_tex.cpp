@@ -9,10 +9,7 @@ namespace {
 
 std::vector<std::string> characters(const std::string& text) {
     std::vector<std::string> all;
-    for (const char c : text) {
-        if ((static_cast<unsigned char>(c) & 0xc0) != 0x80) all.emplace_back();
-        all.back() += c;
-    }
+    for (std::size_t i = 0; i < text.size(); i += all.back().size()) all.push_back(character_at(text, i));
     return all;
 }
 

@@ -16,11 +16,6 @@ constexpr double kScript = 0.70, kSubscript = -0.20, kSuperscript = 0.38;
 constexpr int kDeepest = 8;
 
 bool letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
-std::size_t character(const std::string& s, std::size_t at) {  // its bytes
-    std::size_t n = 1;
-    while (at + n < s.size() && (static_cast<unsigned char>(s[at + n]) & 0xc0) == 0x80) ++n;
-    return n;
-}
 
 class Parser {
 public:
@@ -29,9 +24,9 @@ public:
     void prose(std::size_t from, std::size_t to) {
         const bool before = prose_;
         prose_ = true;
-        for (std::size_t i = from; i < to; i += character(text_, i)) {
+        for (std::size_t i = from; i < to; i += character_at(text_, i).size()) {
             if (text_[i] == '\\' && i + 1 < to && text_[i + 1] == '$') ++i;
-            put(text_.substr(i, character(text_, i)), false);
+            put(character_at(text_, i), false);
         }
         prose_ = before;
     }
@@ -74,7 +69,7 @@ private:
         if (c == ' ') return put("\u2009", false), void(++at_);  // thin
         if (c == '-') return put("\u2212", false), void(++at_);
         if (c == '\'') return put("\u2032", false), void(++at_);
-        const std::string one = text_.substr(at_, character(text_, at_));
+        const std::string one = character_at(text_, at_);
         at_ += one.size();
         put(one, letter(c));
     }
@@ -185,8 +180,8 @@ private:
         for (const TextRun& r : runs) {
             if (r.rise != 0) continue;  // scripts
             bool digit = false;
-            for (std::size_t i = 0; i < r.text.size(); i += character(r.text, i)) {
-                const std::string c = r.text.substr(i, character(r.text, i));
+            for (std::size_t i = 0; i < r.text.size(); i += character_at(r.text, i).size()) {
+                const std::string c = character_at(r.text, i);
                 for (const char* sign : {"+", "\u2212", "±", "=", "/", ",", "·", "×"})
                     if (c == sign) return true;
                 const bool number = std::isdigit(static_cast<unsigned char>(c[0])) || c == ".";
@@ -218,9 +213,9 @@ private:
         else join(math_class(characters));
         if (before_ > 0) fresh_ = true;
         std::string letters;
-        for (std::size_t i = 0; i < characters.size(); i += character(characters, i)) {
+        for (std::size_t i = 0; i < characters.size(); i += character_at(characters, i).size()) {
             const std::string other = alphabet_.empty() ? "" : math_letter(alphabet_, characters[i]);
-            letters += (other.empty() ? characters.substr(i, character(characters, i)) : other) + accents_;
+            letters += (other.empty() ? character_at(characters, i) : other) + accents_;
         }
         if (!fresh_ && !runs_.empty() && runs_.back().italic == italic && runs_.back().bold == bold_ && runs_.back().prose == prose_) {
             runs_.back().text += letters;

@@ -37,12 +37,6 @@ void check(cairo_t* c) {
         throw std::runtime_error(std::string("Cairo failed: ") + cairo_status_to_string(status));
 }
 
-std::string character_at(const std::string& text, std::size_t at) {
-    std::size_t n = 1;
-    while (at + n < text.size() && (static_cast<unsigned char>(text[at + n]) & 0xc0) == 0x80) ++n;
-    return text.substr(at, n);
-}
-
 /// Above letters that reach into accents, as capitals do in fonts that have places for accents on small letters only.
 void raise_accents(PangoLayout* layout, const std::string& text, double size, bool italic) {
     constexpr double kGap = 0.05, kSlant = 0.2;
