@@ -56,6 +56,24 @@ TEST(SharedPlanes, OfSurfacesInTwoPlanesTheNearerIsSeen) {
         EXPECT_FALSE(traced.embree->translucent());
     }
 }
+TEST(SharedPlanes, ASheetLiesOverWhatIsListedBeforeIt) {
+    const std::string sheet = R"({"surface": "small", "boundary": false, "opacity": 0.5})";
+    const Point middle{1, 2, 0.7}, n = normalized(cross(Point{0.8, 0.6, 0.1}, Point{-0.6, 0.8, 0.3}));
+    for (const bool exact : {false, true})
+        for (const double above : {2.0, -2.0}) {
+            const Ray ray{middle + above * n, normalized(-above * n)};
+            const TracedScene over = build_traced_scene(parse_scene(squares(drawn("large") + "," + sheet, 0), "s.json"), 1e-3, {}, exact);
+            std::vector<Hit> hits;
+            over.embree->layers(ray, hits);
+            ASSERT_EQ(hits.size(), 2u);
+            EXPECT_EQ(hits[0].geometry, 1u);
+            EXPECT_EQ(hits[1].geometry, 0u);
+            const TracedScene under = build_traced_scene(parse_scene(squares(sheet + "," + drawn("large"), 0), "s.json"), 1e-3, {}, exact);
+            under.embree->layers(ray, hits);
+            ASSERT_EQ(hits.size(), 1u);
+            EXPECT_EQ(hits[0].geometry, 1u);
+        }
+}
 TEST(SharedPlanes, NeighboursInOnePlaneAreOpaque) {
     EXPECT_FALSE(build_traced_scene(parse_scene(squares(drawn("beside") + "," + drawn("large"), 0), "s.json"), 1e-3, {}).embree->translucent());
     EXPECT_TRUE(build_traced_scene(parse_scene(squares(drawn("small") + "," + drawn("large"), 0), "s.json"), 1e-3, {}).embree->translucent());

@@ -52,8 +52,7 @@ public:
 struct Geometry {
     std::uint32_t id = 0;
     std::uint32_t mesh = 0;  // number of the mesh it is a part of; meaningless for others
-    float opacity = 1;
-    bool in_shared_plane() const { return opacity == static_cast<float>(EmbreeScene::shared_plane); }
+    EmbreeScene::Sheet sheet{1};
     bool solid = false;  // a tube or ball: counts once however often a ray passes through its skin
     bool quads = false;  // a QuadPart
     const ExactPatch* patch = nullptr;  // rays meet it itself; mesh is then its group

@@ -45,8 +45,13 @@ struct HitLanes {
 class EmbreeScene {
 public:
     static constexpr int packet = 16;  // rays a call
-    /// The opacity of what is opaque but shares its plane with something else: rays then look behind it too, and what was added last lies over the others.
-    static constexpr double shared_plane = 1 - 0x1p-24;
+    /// What a surface does to rays. Of those that share a plane the one that was added last lies over the others: rays look behind them, too.
+    struct Sheet {
+        double opacity;
+        bool shares_plane;
+        Sheet(double its_opacity, bool its_plane_is_shared = false) : opacity(its_opacity), shares_plane(its_plane_is_shared) {}
+        bool ends_rays() const { return opacity == 1 && !shares_plane; }
+    };
 
     explicit EmbreeScene(const Point& centre);
     ~EmbreeScene();
@@ -55,11 +60,11 @@ public:
 
     /// One geometry a part, numbered one after the other; returns the first. All parts share the vertices, so that rays
     /// do not slip through between them.
-    std::uint32_t add_mesh(const Mesh& mesh, double opacity);
+    std::uint32_t add_mesh(const Mesh& mesh, const Sheet& sheet);
     /// The same of a mesh in less than half of the memory, which rays take longer to meet. Its parts must live as long, in their places; and they have the scene's centre.
-    std::uint32_t add_quads(const std::vector<QuadPart>& parts, double opacity);
+    std::uint32_t add_quads(const std::vector<QuadPart>& parts, const Sheet& sheet);
     /// The patch itself, which must live as long; its neighbours are those of the same `group`.
-    std::uint32_t add_patch(const ExactPatch& patch, std::uint32_t group, double opacity);
+    std::uint32_t add_patch(const ExactPatch& patch, std::uint32_t group, const Sheet& sheet);
     /// Round tubes about cubic Bezier curves; returns the geometry's number.
     std::uint32_t add_tubes(const std::vector<std::array<Point, 4>>& pieces, double radius, double opacity);
     std::uint32_t add_balls(const std::vector<Point>& centres, double radius, double opacity);

@@ -57,10 +57,10 @@ struct EmbreeScene::State {
                 std::string("Embree failed while ") + doing +
                 (e == RTC_ERROR_OUT_OF_MEMORY ? ": out of memory" : ": error " + std::to_string(e)));
     }
-    std::uint32_t attach(RTCGeometry g, double opacity, bool solid, bool of_quads = false) {
-        Geometry& data = geometries.emplace_back(Geometry{0, meshes, static_cast<float>(opacity), solid, of_quads});
+    std::uint32_t attach(RTCGeometry g, const Sheet& sheet, bool solid, bool of_quads = false) {
+        Geometry& data = geometries.emplace_back(Geometry{0, meshes, sheet, solid, of_quads});
         rtcSetGeometryUserData(g, &data);
-        if (opacity < 1) {
+        if (!sheet.ends_rays()) {
             translucent = true;
             rtcSetGeometryIntersectFilterFunction(g, remember_layer);
             rtcSetGeometryOccludedFilterFunction(g, remember_layer);
@@ -150,19 +150,19 @@ struct EmbreeScene::State {
     }
     /// At one place, but for rounding, in a plane that both share?
     bool in_one_plane(const Hit& a, const Hit& b, const Point& along) const {
-        if (!geometries[a.geometry].in_shared_plane() || !geometries[b.geometry].in_shared_plane()) return false;
+        if (!geometries[a.geometry].sheet.shares_plane || !geometries[b.geometry].sheet.shares_plane) return false;
         const double size = length(a.normal), across = size > 0 ? std::fabs(dot(a.normal, along)) / size : 1;
         return std::fabs(a.distance - b.distance) * across < 1e-6 * extent.radius;
     }
-    /// What was added last lies over what shares its plane, and hides what is behind.
+    /// What was added last lies over what shares its plane; hides what is behind, if it is opaque.
     void order_in_planes(std::vector<Hit>& hits, const Point& along) const {
         for (std::size_t i = 0; i < hits.size(); ++i) {
-            if (!geometries[hits[i].geometry].in_shared_plane()) continue;
+            if (!geometries[hits[i].geometry].sheet.shares_plane) continue;
             std::size_t over = i;
             for (std::size_t k = i + 1; k < hits.size(); ++k)
                 if (in_one_plane(hits[i], hits[k], along) && hits[k].geometry > hits[over].geometry) over = k;
-            std::swap(hits[i], hits[over]);
-            hits.resize(i + 1);
+            std::rotate(hits.begin() + static_cast<std::ptrdiff_t>(i), hits.begin() + static_cast<std::ptrdiff_t>(over), hits.begin() + static_cast<std::ptrdiff_t>(over) + 1);
+            if (geometries[hits[i].geometry].sheet.opacity == 1) hits.resize(i + 1);
         }
     }
     /// In order, each once: tubes and balls however often a ray passes their skin, others where leaves or triangles meet.
@@ -174,7 +174,7 @@ struct EmbreeScene::State {
                 hits.erase(std::remove_if(hits.begin() + static_cast<std::ptrdiff_t>(i) + 1, hits.end(), [&](const Hit& h) { return h.geometry == hits[i].geometry; }), hits.end());
     }
     double lets_through(const Geometry& geometry, Shadows shadows) const {
-        const double o = geometry.opacity;
+        const double o = geometry.sheet.opacity;
         return geometry.solid || shadows == Shadows::physical ? 1 - o : 1 - o * o * o;
     }
     double transmittance(const Ray& ray, Shadows shadows, std::vector<Hit>& hits) const {

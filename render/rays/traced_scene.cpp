@@ -125,8 +125,8 @@ private:
         thing.mesh = &mesh;
         thing.inside_out = known.inside_out;
         if (o.opacity > 0) {
-            if (known.quads) result_.embree->add_quads(*known.quads, opacity_of(thing));
-            else if (!exact_) result_.embree->add_mesh(mesh, opacity_of(thing));
+            if (known.quads) result_.embree->add_quads(*known.quads, sheet_of(thing));
+            else if (!exact_) result_.embree->add_mesh(mesh, sheet_of(thing));
             for (const MeshPart& part : mesh.parts) {
                 thing.part = &part;
                 if (known.quads) thing.quads = &(*known.quads)[std::size_t(&part - mesh.parts.data())];
@@ -140,8 +140,8 @@ private:
         if (o.boundary && !(o.line.width > 0)) add_boundary(o, surface);
     }
 
-    /// For rays; of the object that is being added.
-    double opacity_of(const Thing& thing) const { return thing.opacity == 1 && shared_planes_[done_] ? EmbreeScene::shared_plane : thing.opacity; }
+    /// Of the object that is being added.
+    EmbreeScene::Sheet sheet_of(const Thing& thing) const { return {thing.opacity, shared_planes_[done_] != 0}; }
 
     void add_patch(Thing& thing, const Surface& surface) {
         const ExactPatch*& known = exact_of_[thing.patch];
@@ -150,7 +150,7 @@ private:
         } catch (const Error& e) {
             throw Error(e.kind(), "surface \"" + surface.name + "\": " + e.what());
         }
-        result_.embree->add_patch(*known, group_, opacity_of(thing));
+        result_.embree->add_patch(*known, group_, sheet_of(thing));
         thing.flipped = thing.part->flipped;
         thing.error = 0;
         thing.mesh = nullptr;
