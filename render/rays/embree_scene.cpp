@@ -121,8 +121,7 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
         hits.push_back(h);
     }
     for (Hit& h : hits) s.to_half(h);
-    s.tidy(hits);
-    s.order_in_planes(hits, ray.direction);
+    s.tidy(hits, ray.direction);
     for (Hit& h : hits) h.distance += start;
 }
 

@@ -166,8 +166,9 @@ struct EmbreeScene::State {
         }
     }
     /// In order, each once: tubes and balls however often a ray passes their skin, others where leaves or triangles meet.
-    void tidy(std::vector<Hit>& hits) const {
+    void tidy(std::vector<Hit>& hits, const Point& along) const {
         std::sort(hits.begin(), hits.end(), nearer);
+        order_in_planes(hits, along);
         hits.erase(std::unique(hits.begin(), hits.end(), [&](const Hit& a, const Hit& b) { return same_place(a, b); }), hits.end());
         for (std::size_t i = 0; i < hits.size(); ++i)
             if (geometries[hits[i].geometry].solid)
@@ -195,7 +196,7 @@ struct EmbreeScene::State {
         note(&open, 1);
         if (r.tfar < 0) return 0;
         for (Hit& h : hits) to_half(h);
-        tidy(hits);
+        tidy(hits, ray.direction);
         double light = 1;
         for (const Hit& h : hits) light *= lets_through(geometries[h.geometry], shadows);
         return light;
