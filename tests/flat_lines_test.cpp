@@ -104,6 +104,24 @@ TEST(Axes, TicksStandWhereTheyBelong) {
     EXPECT_EQ(texts, "1 2 t H ");
 }
 
+TEST(Axes, BallsOnTicksDoNotHideTheirNumbers) {
+    for (const double radius : {0.0, 0.02, 0.3}) {
+        Scene scene = from_above(4, 800, 800, 1);
+        SceneObject& axes = add(scene, Kind::axes);
+        axes.axes.axis[0] = Axes::Axis{-1.5, 1.5, std::vector<double>{-1, 0, 1}, {}};
+        axes.line.width = 1, axes.line.hidden = Hidden::hide;
+        if (radius > 0)
+            for (const double x : {-1.0, 0.0, 1.0}) {
+                SceneObject& ball = add(scene, Kind::point);
+                ball.point = {x, 0, 0}, ball.radius = radius;
+            }
+        RenderOptions how;
+        how.vectors = true;
+        const Picture picture = render(scene, how);
+        const Drawing& drawing = picture.drawn.at(0).drawing;
+        EXPECT_EQ(std::count_if(drawing.begin(), drawing.end(), [](const DrawingItem& item) { return std::holds_alternative<Text>(item.shape) && item.opacity == 1; }), 3) << radius;
+    }
+}
 TEST(Axes, TicksMayHaveNamesInsteadOfNumbers) {
     const Scene scene = scene_from(R"json({ "isoparm": 1, "objects": [{ "axes": { "x": [0, 3], "ticks": [[2, "i+1"], 1, [0, "i-1"]] } }] })json");
     const Axes::Axis& x = *scene.objects[0].axes.axis[0];

@@ -77,7 +77,7 @@ TEST(MathText, AccentsAlphabetsAndSigns) {
     EXPECT_NEAR(text_box(parse_math_text("\\hat{n}"), 100).advance, text_box(parse_math_text("n_{}{}"), 100).advance, 3);
 }
 TEST(MathText, FaultsSayWhere) {
-    for (const auto& [text, offset] : {std::pair<std::string, std::size_t>{"P_{0", 2}, {"\\frac{1}", 7}, {"\\hat", 3}, {"\\text x", 4}, {"a\\", 1}, {"\\frac{1}{\\alhpa}", 9}, {"\\sqrt{x", 5}, {"P_", 1}, {"a}", 1}, {"x \\alhpa", 2}, {"a $b", 2}}) {
+    for (const auto& [text, offset] : {std::pair<std::string, std::size_t>{"P_{0", 2}, {"\\frac{1}", 7}, {"\\hat", 3}, {"\\text x", 4}, {"a\\", 1}, {"\\frac{1}{\\alhpa}", 9}, {"\\sqrt{x", 5}, {"\\sqrt[3{x}", 5}, {"\\hat{\\sqrt{x}}", 5}, {"P_", 1}, {"a}", 1}, {"x \\alhpa", 2}, {"a $b", 2}}) {
         try {
             parse_math_text(text);
             ADD_FAILURE() << text;

@@ -223,6 +223,32 @@ TEST(ParameterLines, EndWhereASurfaceHidesThem) {
     for (const auto& p : line.points) EXPECT_NEAR(p.y, 200, 1e-6);
 }
 
+TEST(ParameterLines, EndWhereASurfaceInTheirPlaneLiesOverThem) {
+    // As above, but in the same plane: what is listed later covers lines and borders, what is listed before does not.
+    for (const bool later : {true, false})
+        for (const bool exact : {false, true}) {
+            Scene scene = from_above(4, 400, 400, 1);
+            add_sheet(scene, 0, 1);
+            SceneObject& large = add_sheet(scene, 0, 1);
+            scene.surfaces[1].patches = {{"large", make_bezier_patch({{{-1.8, 0.5, 0}, {-1.8, 1.8, 0}}, {{1.8, 0.5, 0}, {1.8, 1.8, 0}}})}};
+            large.outline.line.width = 2;
+            large.label.text = parse_math_text("L"), large.label.at_uv = Vec2{0.5, 0.1}, large.label.hidden = Hidden::hide;
+            if (later) std::swap(scene.objects[0], scene.objects[1]);
+            RenderOptions how;
+            how.vectors = true, how.exact = exact;
+            const Picture picture = render(scene, how);
+            const Drawing& drawing = picture.drawn.at(0).drawing;
+            const auto& line = std::get<Polyline>(drawing.at(0).shape);
+            double length = 0;
+            auto all = line.more;
+            all.push_back(line.points);
+            for (const auto& points : all)
+                for (std::size_t i = 1; i < points.size(); ++i) length += std::hypot(points[i].x - points[i - 1].x, points[i].y - points[i - 1].y);
+            EXPECT_NEAR(length, later ? 980 - 200 : 980, 1) << later << exact;
+            EXPECT_EQ(drawing.size(), later ? 1u : 2u) << "the label at a place that is covered";
+        }
+}
+
 TEST(ParameterLines, AsVectorsLookLikeTheTracersOwn) {
     // The mean of a band across a line: what the tracer paints and what is drawn over the raster darken it alike.
     Scene scene = from_above(3, 300, 300, 16);

@@ -160,8 +160,8 @@ TEST(Scene, ObjectsCameraImageAndToleranceAreRead) {
 // CSS Color Module Level 4, section 6.1: the basic names.
 TEST(Scene, ColoursHaveTheNamesOfCss) {
     const auto color = [](const std::string& name) { return *load("{ \"isoparm\": 1, \"objects\": [ { \"point\": [0,0,0], \"color\": \"" + name + "\" } ] }").objects.at(0).color; };
-    for (const auto& [name, hex] : {std::pair("aqua", "#00ffff"), {"black", "#000000"}, {"blue", "#0000ff"}, {"fuchsia", "#ff00ff"}, {"gray", "#808080"}, {"green", "#008000"}, {"lime", "#00ff00"}, {"maroon", "#800000"}, {"navy", "#000080"},
-                                    {"olive", "#808000"}, {"orange", "#ffa500"}, {"purple", "#800080"}, {"red", "#f00"}, {"silver", "#c0c0c0"}, {"teal", "#008080"}, {"white", "#fff"}, {"yellow", "#ff0"}})
+    for (const auto& [name, hex] : {std::pair("aqua", "#00ffff"), {"black", "#000000"}, {"blue", "#0000ff"}, {"fuchsia", "#ff00ff"}, {"gray", "#808080"}, {"grey", "#808080"}, {"Green", "#008000"}, {"lime", "#00ff00"}, {"maroon", "#800000"}, {"navy", "#000080"},
+                                    {"olive", "#808000"}, {"orange", "#ffa500"}, {"purple", "#800080"}, {"RED", "#F00"}, {"silver", "#c0c0c0"}, {"teal", "#008080"}, {"white", "#fff"}, {"yellow", "#ff0"}})
         EXPECT_EQ(color(name), color(hex)) << name;
     try {
         color("navi");

@@ -67,6 +67,22 @@ one that was being made, and without the film.
 
 constexpr int kUnfinished = -1;
 
+bool blank(const Picture& picture, const std::optional<Color>& background) {
+    const auto same = [&](const float* pixel) {
+        if (!background) return pixel[3] == 0;
+        return pixel[0] == static_cast<float>(background->x) && pixel[1] == static_cast<float>(background->y) && pixel[2] == static_cast<float>(background->z);
+    };
+    for (int y = 0; y < picture.image.height; ++y)
+        for (int x = 0; x < picture.image.width; ++x)
+            if (!same(picture.image.at(x, y))) return false;
+    return std::all_of(picture.drawn.begin(), picture.drawn.end(), [](const DrawnPart& part) { return part.drawing.empty(); });
+}
+/// Parts of pictures may well show nothing.
+void tell_if_blank(const Scene& scene, const Picture& picture, const std::string& name, bool part) {
+    if (drawn_objects(scene).empty()) std::fprintf(stderr, "isoparm: note: %s: there is nothing to draw in %s, neither objects nor surfaces nor curves\n", name.c_str(), quoted(scene.path).c_str());
+    else if (!part && blank(picture, scene.image.background)) std::fprintf(stderr, "isoparm: note: %s shows the background and nothing else: see where the camera looks, and whether the objects have an opacity of 0\n", name.c_str());
+}
+
 /// Whether the picture is as good as was asked for, as an exit code; or kUnfinished, and then it is written only with `in_any_case`. `name`: in messages.
 int render_one(const Scene& scene, const std::string& output, const std::string& name, RenderOptions how, const Options& options, bool in_any_case) {
     const bool quiet = options.quiet();
@@ -80,7 +96,7 @@ int render_one(const Scene& scene, const std::string& output, const std::string&
     }();
     if (!picture.whole && !in_any_case) return kUnfinished;
     write_picture(options, output, scene, how, picture);
-    if (drawn_objects(scene).empty()) std::fprintf(stderr, "isoparm: warning: %s: there is nothing to draw in %s, neither objects nor surfaces nor curves\n", name.c_str(), quoted(scene.path).c_str());
+    tell_if_blank(scene, picture, name, how.crop.has_value());
     if (!quiet) std::fprintf(stderr, "%s: %s\n", name.c_str(), summary_of(picture).c_str());
     const SampleCount& n = picture.samples;
     if (!picture.whole) return kUnfinished;

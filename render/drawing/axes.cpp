@@ -111,7 +111,7 @@ private:
         for (const Point& p : points) obstacles_.push_back({camera_.project(p), 0.5 * o_.line.width * pixel_});
     }
     double opacity(const Point& p) const {
-        return o_.opacity * opacity_of(o_.line.hidden, o_.line.hidden == Hidden::show ? 1 : sight_.of(p, clear_));
+        return o_.opacity * opacity_of(o_.line.hidden, o_.line.hidden == Hidden::show ? 1 : sight_.of(p, std::max(clear_, 2 * sight_.ball_about(p))));
     }
 
     void arrow(const Point& tip, const Vec2& along) {
@@ -204,7 +204,7 @@ private:
     const Sight& sight_;
     const Camera& camera_;
     double pixel_, letter_;
-    double clear_ = 0;  // a ball on a tick does not hide its number
+    double clear_ = 0;  // what is so close to an axis does not hide it; nor does a ball on a tick hide the number
     std::vector<Obstacle>& obstacles_;
     std::vector<MarkRequest>& marks_;
     Drawing& drawing_;

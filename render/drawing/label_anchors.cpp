@@ -41,18 +41,18 @@ double LabelAnchors::radius_of_point(const SceneObject& o) const {
     return radius_of(o, size_);
 }
 
-Anchor LabelAnchors::at(const Point& p, double radius) const {
+Anchor LabelAnchors::at(const Point& p, double radius, const Sight& sight) const {
     if (!(camera_.depth(p) > 0)) return {{NAN, NAN}, 0, {}, 0};
     for (const auto& [centre, other] : balls_)
         if (distance(centre, p) <= 1e-6 * size_) radius = std::max(radius, other);
     const Vec2 at = camera_.project(p);
-    return {at, sight_.of(p, 1.5 * radius), {at.x - middle_.x, at.y - middle_.y}, radius / camera_.pixel_size(camera_.depth(p))};
+    return {at, sight.of(p, 1.5 * radius), {at.x - middle_.x, at.y - middle_.y}, radius / camera_.pixel_size(camera_.depth(p))};
 }
 
-std::vector<Anchor> LabelAnchors::of(const SceneObject& o) const {
+std::vector<Anchor> LabelAnchors::of(const SceneObject& o, const Sight& sight) const {
     switch (o.kind) {
         case Kind::surface:
-            return of_surface(o);
+            return of_surface(o, sight);
         case Kind::curve:
             return of_curve(o);
         case Kind::net:
@@ -67,23 +67,23 @@ std::vector<Anchor> LabelAnchors::of(const SceneObject& o) const {
     return {};
 }
 
-std::vector<Anchor> LabelAnchors::of_surface(const SceneObject& o) const {
+std::vector<Anchor> LabelAnchors::of_surface(const SceneObject& o, const Sight& sight) const {
     const Surface& s = surface_of(scene_, o);
     const Patch& patch = s.patches[s.patches.size() / 2].patch;
     std::vector<Anchor> anchors;
-    for (const Vec2& uv : o.label.at_uv ? std::vector<Vec2>{*o.label.at_uv} : middle_places(patch)) anchors.push_back(at(patch.point(uv.x, uv.y), 0));
+    for (const Vec2& uv : o.label.at_uv ? std::vector<Vec2>{*o.label.at_uv} : middle_places(patch)) anchors.push_back(at(patch.point(uv.x, uv.y), 0, sight));
     if (o.label.at_uv || std::any_of(anchors.begin(), anchors.end(), seen)) return anchors;
-    const std::vector<Anchor> others = in_sight(s.patches);
+    const std::vector<Anchor> others = in_sight(s.patches, sight);
     return others.empty() ? anchors : others;
 }
 
 /// What is seen of a surface whose middle is hidden: places with as much of it around them as there is.
-std::vector<Anchor> LabelAnchors::in_sight(const Composite& patches) const {
+std::vector<Anchor> LabelAnchors::in_sight(const Composite& patches, const Sight& sight) const {
     constexpr std::size_t kLookedAt = 600, kKept = 5;
     constexpr double kAround = 2.5;  // letters
     std::vector<Anchor> all;
     for (const Point& p : places_all_over(patches, kLookedAt))
-        if (const Anchor a = at(p, 0); std::isfinite(a.at.x + a.at.y) && inside(camera_, a.at)) all.push_back(a);
+        if (const Anchor a = at(p, 0, sight); std::isfinite(a.at.x + a.at.y) && inside(camera_, a.at)) all.push_back(a);
     std::vector<std::pair<double, Anchor>> found;  // the lower, the better
     for (const Anchor& a : all) {
         if (!seen(a)) continue;

@@ -12,16 +12,17 @@ class LabelAnchors {
 public:
     /// `pixel`, `letter`: as overlay() has them.
     LabelAnchors(const Scene& scene, const Camera& camera, const Sight& sight, double pixel, double letter, const std::vector<SceneObject>& objects);
-    /// Where an object's own label may stand, the best first.
-    std::vector<Anchor> of(const SceneObject& o) const;
+    /// Where an object's own label may stand, the best first. `sight`: of points on it.
+    std::vector<Anchor> of(const SceneObject& o, const Sight& sight) const;
     /// That of a point in a ball of that radius (scene units), or in a larger one of the objects about the same point. Not finite behind the eye.
-    Anchor at(const Point& p, double radius) const;
+    Anchor at(const Point& p, double radius) const { return at(p, radius, sight_); }
     /// Of a ball, or of a flat disc as it is seen; scene units.
     double radius_of_point(const SceneObject& o) const;
 
 private:
-    std::vector<Anchor> of_surface(const SceneObject& o) const;
-    std::vector<Anchor> in_sight(const Composite& patches) const;
+    Anchor at(const Point& p, double radius, const Sight& sight) const;
+    std::vector<Anchor> of_surface(const SceneObject& o, const Sight& sight) const;
+    std::vector<Anchor> in_sight(const Composite& patches, const Sight& sight) const;
     std::vector<Anchor> of_curve(const SceneObject& o) const;
     Anchor beyond(const Arrow& arrow) const;
 

@@ -53,7 +53,12 @@ class Writer {
 public:
     std::string run(const MathText& text) {
         for (std::size_t i = 0; i < text.size(); ++i) {
-            prose(text[i]) && roots_.empty() ? words(text[i]) : text[i].covers > 0 ? root(text[i], i + text[i].covers) : formula(text[i]);
+            const std::size_t sign = root_of(text, i);
+            const MathText index(text.begin() + static_cast<std::ptrdiff_t>(i), text.begin() + static_cast<std::ptrdiff_t>(sign));
+            i = sign;
+            if (text[i].covers > 0) root(text[i], i + text[i].covers, index);
+            else if (prose(text[i]) && roots_.empty()) words(text[i]);
+            else formula(text[i]);
             while (!roots_.empty() && roots_.back().last == i) end_root();
         }
         leave();
@@ -71,10 +76,23 @@ private:
             out_ += name.empty() ? escaped(c) : "$" + name + "$";
         }
     }
+    /// The radical sign whose index begins there; `i` where none does.
+    static std::size_t root_of(const MathText& text, std::size_t i) {
+        for (std::size_t sign = i + 1; sign < text.size(); ++sign)
+            if (text[sign].index > 0 && text[sign].index == sign - i) return sign;
+        return i;
+    }
     /// \sqrt, up to the end of that run.
-    void root(const TextRun& r, std::size_t last) {
+    void root(const TextRun& r, std::size_t last, MathText index) {
         formula({"", false, false, r.scale, r.rise});
-        out_ += "\\sqrt{";
+        out_ += "\\sqrt";
+        if (!index.empty()) {
+            const TextRun first = index.front();
+            for (TextRun& i : index) i.scale /= first.scale, i.rise = (i.rise - first.rise) / first.scale;
+            const std::string tex = tex_of(index);
+            out_ += "[" + tex.substr(1, tex.size() - 2) + "]";  // without its dollars
+        }
+        out_ += "{";
         roots_.push_back({last, levels_.size()});
         levels_.push_back({r.scale, r.rise});
     }

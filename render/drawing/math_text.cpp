@@ -13,6 +13,7 @@ namespace isoparm {
 namespace {
 
 constexpr double kScript = 0.70, kSubscript = -0.20, kSuperscript = 0.38;
+constexpr double kIndex = 0.55, kIndexRise = 0.45, kIndexOver = 0.33;  // of a root: its size and place, ems, and how far it stands over the sign
 constexpr int kDeepest = 8;
 
 bool letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
@@ -107,6 +108,7 @@ private:
         if (name.empty()) return sign(start, to);
         if (const auto symbol = math_symbol(name)) return put(symbol->text, symbol->italic);
         if (const std::string accent = math_accent(name); !accent.empty()) return set(accents_, accents_ + accent, [&] { argument(name, to); });
+        if (name == "sqrt" && !accents_.empty()) fail(start, "found a root below an accent, expected letters there");
         if (name == "mathbf" || name == "boldsymbol") return set(bold_, true, [&] { argument(name, to); });
         if (name == "mathrm" || name == "operatorname") return set(upright_, true, [&] { argument(name, to); });
         if (name == "mathbb" || name == "mathcal") return set(alphabet_, name, [&] { argument(name, to); });
@@ -141,9 +143,13 @@ private:
         atom(to);
     }
     void root(const std::string& name, std::size_t to) {
+        const std::size_t first = runs_.size();
+        index(to);
         fresh_ = true;
         put("\u221a", false);
         const std::size_t sign = runs_.size() - 1;
+        runs_[sign].index = sign - first;
+        if (sign > first) runs_[sign].before = -kIndexOver * scale_;
         fresh_ = true;
         last_ = MathClass::none;
         argument(name, to);
@@ -151,6 +157,18 @@ private:
         runs_[sign].covers = runs_.size() - 1 - sign;
         fresh_ = true;
         last_ = MathClass::ordinary;
+    }
+    /// What stands in [ ] behind \sqrt, over the hook of the sign.
+    void index(std::size_t to) {
+        while (at_ < to && text_[at_] == ' ') ++at_;
+        if (at_ >= to || text_[at_] != '[') return;
+        const std::size_t open = at_++;
+        join(MathClass::ordinary);
+        const double scale = scale_, rise = rise_;
+        scale_ *= kIndex, rise_ += scale * kIndexRise, fresh_ = true;
+        while (at_ < to && text_[at_] != ']') atom(to);
+        if (at_++ >= to) fail(open, "found \"[\" without an end, expected \"]\"");
+        scale_ = scale, rise_ = rise;
     }
     /// A fraction in one line; what would be read wrongly without brackets gets some.
     void fraction(const std::string& name, std::size_t to) {

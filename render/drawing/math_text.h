@@ -22,6 +22,7 @@ struct TextRun {
     bool prose = false;  // no mathematics
     double before = 0;   // space before it, beside what is written
     std::size_t covers = 0;  // of a radical sign: so many runs behind it are under its bar
+    std::size_t index = 0;   // likewise: so many runs before it are its index
 };
 using MathText = std::vector<TextRun>;
 

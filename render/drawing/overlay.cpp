@@ -44,11 +44,12 @@ public:
 
     Drawing run(const std::vector<SceneObject>& objects) {
         anchors_.emplace(scene_, camera_, sight_, pixel_, letter_, objects);
+        const auto sight_on = [&](const SceneObject& o) { return o.kind == Kind::surface ? sight_.on(std::size_t(&o - objects.data())) : sight_; };
         for (const SceneObject& o : objects)
-            if (o.kind == Kind::surface) add_surface_lines(o);
-        for (const SceneObject& o : objects) add(o);
+            if (o.kind == Kind::surface) add_surface_lines(o, sight_on(o));
+        for (const SceneObject& o : objects) add(o, sight_on(o));
         for (const auto& [x, y, width, height] : place_.covered) avoid_box(x, y, width, height);
-        for (const SceneObject& o : objects) add_labels(o);
+        for (const SceneObject& o : objects) add_labels(o, sight_on(o));
         place_labels(requests_, obstacles_, camera_.width, camera_.height, drawing_, marks_);
         if (!place_.inset) {
             const LegendRoom room = legend_room(objects, letter_, 2 * camera_.width);
@@ -60,24 +61,24 @@ public:
 
 private:
     // ---- lines ----------------------------------------------------------------------------------------------------
-    void add(const SceneObject& o) {
+    void add(const SceneObject& o, const Sight& sight) {
         const double radius = radius_of(o, size_);
         switch (o.kind) {
             case Kind::surface:
-                add_jumps(o);
+                add_jumps(o, sight);
                 add_twists(o);
                 if (!o.boundary) return;
                 for (const DrawnCurve& edge : drawn_edges(surface_of(scene_, o).patches, size_))
-                    add(o, points_of(edge), curve_color(), 1, radius);
+                    add(o, points_of(edge), curve_color(), 1, radius, sight);
                 return;
             case Kind::curve:
                 add_comb(o);
                 return add(o, points_of(drawn(curve_of(scene_, o))), o.color.value_or(curve_color()), o.opacity,
-                           radius);
+                           radius, sight);
             case Kind::net:
                 for (const auto& [i, j] : o.net.rods)
                     add(o, points_between(o.net.points[i], o.net.points[j]), o.color.value_or(net_color()), o.opacity,
-                        radius);
+                        radius, sight);
                 for (const Point& p : o.net.points) avoid({p}, kNetBall * radius);
                 return;
             case Kind::point:
@@ -93,33 +94,33 @@ private:
                 avoid(points_between(o.arrow.tail, o.arrow.tip), 0);
         }
     }
-    void add_surface_lines(const SceneObject& o) {
+    void add_surface_lines(const SceneObject& o, const Sight& sight) {
         const Composite& patches = surface_of(scene_, o).patches;
-        if (isolines_ && o.opacity > 0) add_isolines(patches, o.isolines, pixel_, size_, sight_, drawing_);
+        if (isolines_ && o.opacity > 0) add_isolines(patches, o.isolines, pixel_, size_, sight, drawing_);
         if (!(o.outline.line.width > 0)) return;
         const std::size_t first = drawing_.size();
         for (const auto& points : outline_of(patches, camera_, size_, !o.boundary)) {
             avoid(points, 0);
             const LineStyle& line = o.outline.line;
-            add_line(points, {o.outline.color.value_or(curve_color()), o.outline.opacity, line.width * pixel_, scaled(line.dash), line.hidden}, sight_, 0, drawing_);
+            add_line(points, {o.outline.color.value_or(curve_color()), o.outline.opacity, line.width * pixel_, scaled(line.dash), line.hidden}, sight, 0, drawing_);
         }
         join_lines(drawing_, first);
     }
     /// A flat line, or what a tube of that radius covers already.
     void add(const SceneObject& o, const std::vector<Point>& points, const Color& color, double opacity,
-             double radius) {
+             double radius, const Sight& sight) {
         avoid(points, o.line.width > 0 ? 0 : radius);
-        add_line(points, {color, opacity, o.line.width * pixel_, scaled(o.line.dash), o.line.hidden}, sight_, 0,
+        add_line(points, {color, opacity, o.line.width * pixel_, scaled(o.line.dash), o.line.hidden}, sight, 0,
                  drawing_);
     }
-    void add_jumps(const SceneObject& o) {
+    void add_jumps(const SceneObject& o, const Sight& sight) {
         if (o.jumps.of == JumpHeat::Of::none) return;
         const auto edges = hot_edges(surface_of(scene_, o).patches, o.jumps.of, size_);
         const ColorScale scale = scale_of(o.jumps, edges, size_);
         for (const HotEdge& e : edges)
             for (std::size_t k = 0; k + 1 < e.points.size(); ++k) {
                 const double jump = std::max(e.jumps[k], e.jumps[k + 1]);
-                if (jump >= 0) add_line(points_between(e.points[k], e.points[k + 1]), {scale.color(jump), 1, o.jumps.width * pixel_, {}, Hidden::hide}, sight_, 0, drawing_);
+                if (jump >= 0) add_line(points_between(e.points[k], e.points[k + 1]), {scale.color(jump), 1, o.jumps.width * pixel_, {}, Hidden::hide}, sight, 0, drawing_);
             }
         if (o.jumps.legend) scales_.push_back(scale);
     }
@@ -194,10 +195,10 @@ private:
     }
 
     // ---- labels ---------------------------------------------------------------------------------------------------
-    void add_labels(const SceneObject& o) {
+    void add_labels(const SceneObject& o, const Sight& sight) {
         for (std::size_t i = 0; i < o.net_labels.size(); ++i)
             request(o.net_labels[i], {anchors_->at(o.net.points[i], kNetBall * radius_of(o, size_))});
-        if (!o.label.text.empty()) request(o.label, anchors_->of(o), o.kind == Kind::surface ? kOnTheSpot : -1);
+        if (!o.label.text.empty()) request(o.label, anchors_->of(o, sight), o.kind == Kind::surface ? kOnTheSpot : -1);
     }
     void request(const Label& label, const std::vector<Anchor>& anchors, int otherwise = -1) {
         LabelRequest r{&label,

@@ -25,6 +25,7 @@ struct PathLighting::Path {
     Color throughput = kWhite, light;
     Color to_lamps;       // throughput for lights but the sky: without caustics, only what is scattered evenly
     Ray ray;              // from `at` on
+    std::uint32_t under = Hit::none;  // layers() for it
     double density = 0;   // of its direction; 0: the only one
     bool spread = false;  // was scattered evenly at some point
     bool ended = false;
@@ -127,7 +128,9 @@ void PathLighting::scatter(Batch& batch) const {
             if (batch.random(p, kChances).x >= goes_on) p.ended = true;
             p.throughput = p.throughput / goes_on, p.to_lamps = p.to_lamps / goes_on;
         }
-        p.ray = {s.direction.z > 0 ? p.at.origin : p.at.beneath, normalized(frame.to_world(s.direction))};
+        const bool through = !(s.direction.z > 0);
+        p.under = through ? p.at.over : Hit::none;
+        p.ray = {through && p.under == Hit::none ? p.at.beneath : p.at.origin, normalized(frame.to_world(s.direction))};
         p.density = bsdf.specular() ? 0 : s.density;
         p.spread = p.spread || s.spread;
     }
@@ -141,7 +144,7 @@ void PathLighting::find_points(const Batch& batch, Hit* hits) const {
     if (!embree.translucent()) return embree.intersect(rays, batch.n, hits);
     std::vector<Hit> layers;
     for (int i = 0; i < batch.n; ++i) {
-        embree.layers(rays[i], layers);
+        embree.layers(rays[i], layers, batch.paths[i].under);
         hits[i] = Hit{};
         for (std::size_t k = 0; k < layers.size() && !hits[i].found(); ++k)
             if (batch.random(batch.paths[i], kChances, static_cast<int>(k)).y < batch.scene.things[layers[k].geometry].opacity) hits[i] = layers[k];

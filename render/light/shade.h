@@ -22,6 +22,7 @@ struct Surfel {
     bool front = true;  // the viewer sees the outward side
     bool ground = false;  // of the plane that shows only shadows
     const Material* material = nullptr;
+    std::uint32_t over = Hit::none;  // the geometry, if it shares a plane: something may lie under it
     Color ink;  // of the lines drawn on it, unlit
     double ink_cover = 0;
     SampleOf sample;    // that it is lit for

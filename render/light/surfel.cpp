@@ -92,10 +92,11 @@ void color_by_curvature(const Thing& thing, Surfel& s) {
 }
 
 /// Into what was just constructed: copies take longer than all the rest.
-void make_surfel(const Thing& thing, const Camera& camera, const Vec2& at, const SurfelLanes& p, int i, Surfel& s) {
+void make_surfel(const Thing& thing, std::uint32_t geometry, const Camera& camera, const Vec2& at, const SurfelLanes& p, int i, Surfel& s) {
     s.view = at_lane(p.view, i);
     s.opacity = thing.opacity;
     s.material = &thing.material;
+    if (thing.shares_plane) s.over = geometry;
     s.position = at_lane(p.frame, i);
     s.geometric = at_lane(p.geometric, i);
     s.shading = at_lane(p.shading, i);
@@ -141,7 +142,7 @@ void surfels_at(const TracedScene& scene, const Camera& camera, const Ray* rays,
     for (int i = 0; i < n; ++i)
         if (const Thing& thing = scene.things[hits[i].geometry]; !thing.mesh || !p.regular[i]) set_otherwise(thing, rays[i], hits[i], at[i], i, p);
     kernel.places(lanes, p);
-    for (int i = 0; i < n; ++i) make_surfel(scene.things[hits[i].geometry], camera, at[i], p, i, out[i]);
+    for (int i = 0; i < n; ++i) make_surfel(scene.things[hits[i].geometry], hits[i].geometry, camera, at[i], p, i, out[i]);
 }
 
 }  // namespace isoparm

@@ -93,7 +93,7 @@ void intersect_leaf(const RTCIntersectFunctionNArguments* a) {
     const auto use = [&](unsigned lane, unsigned ray, const Roots& roots) {
         for (int r = 0; r < roots.count; ++r) {
             const Hit hit = hit_of(roots.root[r], geometry.id, a->primID);
-            if (!geometry.sheet.ends_rays() && query.patches->layers) {
+            if (!geometry.ends_rays() && query.patches->layers) {
                 query.patches->layers->push_back(hit);
                 continue;
             }
@@ -126,7 +126,7 @@ void shadow_of_leaf(const RTCOccludedFunctionNArguments* a) {
     auto& query = *reinterpret_cast<Query*>(a->context);
     const auto& geometry = *static_cast<const Geometry*>(a->geometryUserPtr);
     const auto use = [&](unsigned lane, unsigned, const Roots& roots) {
-        if (!geometry.sheet.ends_rays())  // leaves overlap: which of these are one is told when all are known
+        if (!geometry.ends_rays())  // leaves overlap: which of these are one is told when all are known
             for (int r = 0; r < roots.count; ++r) query.patches->layers->push_back(hit_of(roots.root[r], geometry.id, a->primID));
         else RTCRayN_tfar(a->ray, a->N, lane) = -std::numeric_limits<float>::infinity();
     };

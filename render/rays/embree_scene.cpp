@@ -83,7 +83,7 @@ Hit EmbreeScene::first(const Ray& ray) const {
     return hit;
 }
 
-void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
+void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits, std::uint32_t under) const {
     const State& s = *state_;
     hits.clear();
     LayerQuery query;
@@ -121,7 +121,7 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits) const {
         hits.push_back(h);
     }
     for (Hit& h : hits) s.to_half(h);
-    s.tidy(hits, ray.direction);
+    s.tidy(hits, ray.direction, under);
     for (Hit& h : hits) h.distance += start;
 }
 

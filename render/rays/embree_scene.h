@@ -45,12 +45,12 @@ struct HitLanes {
 class EmbreeScene {
 public:
     static constexpr int packet = 16;  // rays a call
-    /// What a surface does to rays. Of those that share a plane the one that was added last lies over the others: rays look behind them, too.
-    struct Sheet {
-        double opacity;
-        bool shares_plane;
-        Sheet(double its_opacity, bool its_plane_is_shared = false) : opacity(its_opacity), shares_plane(its_plane_is_shared) {}
-        bool ends_rays() const { return opacity == 1 && !shares_plane; }
+    /// A plane in which flat surfaces lie that cover each other: the one that was added last lies over the others, and rays look behind each of them.
+    struct Plane {
+        Point normal;       // of unit length
+        double within;      // hits so close to each other along it are at one place, scene units; 0: the plane is not shared
+        Plane(const Point& its_normal = {}, double its_width = 0) : normal(its_normal), within(its_width) {}
+        bool shared() const { return within > 0; }
     };
 
     explicit EmbreeScene(const Point& centre);
@@ -59,12 +59,12 @@ public:
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
     /// One geometry a part, numbered one after the other; returns the first. All parts share the vertices, so that rays
-    /// do not slip through between them.
-    std::uint32_t add_mesh(const Mesh& mesh, const Sheet& sheet);
+    /// do not slip through between them. `planes`: by part; empty where none is shared.
+    std::uint32_t add_mesh(const Mesh& mesh, double opacity, const std::vector<Plane>& planes = {});
     /// The same of a mesh in less than half of the memory, which rays take longer to meet. Its parts must live as long, in their places; and they have the scene's centre.
-    std::uint32_t add_quads(const std::vector<QuadPart>& parts, const Sheet& sheet);
+    std::uint32_t add_quads(const std::vector<QuadPart>& parts, double opacity, const std::vector<Plane>& planes = {});
     /// The patch itself, which must live as long; its neighbours are those of the same `group`.
-    std::uint32_t add_patch(const ExactPatch& patch, std::uint32_t group, const Sheet& sheet);
+    std::uint32_t add_patch(const ExactPatch& patch, std::uint32_t group, double opacity, const Plane& plane = {});
     /// Round tubes about cubic Bezier curves; returns the geometry's number.
     std::uint32_t add_tubes(const std::vector<std::array<Point, 4>>& pieces, double radius, double opacity);
     std::uint32_t add_balls(const std::vector<Point>& centres, double radius, double opacity);
@@ -90,8 +90,8 @@ public:
     /// The nearest hit of one ray, whatever its opacity.
     Hit first(const Ray& ray) const;
     /// Every hit from the nearest to the first opaque one, in order. A tube or ball that lets light through counts
-    /// once.
-    void layers(const Ray& ray, std::vector<Hit>& hits) const;
+    /// once. `under`: of what lies in the plane of that geometry, which shares it, only what lies under it.
+    void layers(const Ray& ray, std::vector<Hit>& hits, std::uint32_t under = Hit::none) const;
     /// How dark the shadow of a sheet is: as its opacity asks for, or, as in figures, lighter, so that sheets under sheets keep their colours.
     enum class Shadows { light, physical };
     /// The part of light that passes along each of n <= packet rays; 1 where `active` has no bit.

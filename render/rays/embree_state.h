@@ -57,10 +57,10 @@ struct EmbreeScene::State {
                 std::string("Embree failed while ") + doing +
                 (e == RTC_ERROR_OUT_OF_MEMORY ? ": out of memory" : ": error " + std::to_string(e)));
     }
-    std::uint32_t attach(RTCGeometry g, const Sheet& sheet, bool solid, bool of_quads = false) {
-        Geometry& data = geometries.emplace_back(Geometry{0, meshes, sheet, solid, of_quads});
+    std::uint32_t attach(RTCGeometry g, double opacity, bool solid, bool of_quads = false, const Plane& plane = {}) {
+        Geometry& data = geometries.emplace_back(Geometry{0, meshes, opacity, plane, solid, of_quads});
         rtcSetGeometryUserData(g, &data);
-        if (!sheet.ends_rays()) {
+        if (!data.ends_rays()) {
             translucent = true;
             rtcSetGeometryIntersectFilterFunction(g, remember_layer);
             rtcSetGeometryOccludedFilterFunction(g, remember_layer);
@@ -150,24 +150,31 @@ struct EmbreeScene::State {
     }
     /// At one place, but for rounding, in a plane that both share?
     bool in_one_plane(const Hit& a, const Hit& b, const Point& along) const {
-        if (!geometries[a.geometry].sheet.shares_plane || !geometries[b.geometry].sheet.shares_plane) return false;
-        const double size = length(a.normal), across = size > 0 ? std::fabs(dot(a.normal, along)) / size : 1;
-        return std::fabs(a.distance - b.distance) * across < 1e-6 * extent.radius;
+        const Plane &p = geometries[a.geometry].plane, &q = geometries[b.geometry].plane;
+        return p.shared() && q.shared() && std::fabs((a.distance - b.distance) * dot(p.normal, along)) <= p.within;
     }
     /// What was added last lies over what shares its plane; hides what is behind, if it is opaque.
     void order_in_planes(std::vector<Hit>& hits, const Point& along) const {
         for (std::size_t i = 0; i < hits.size(); ++i) {
-            if (!geometries[hits[i].geometry].sheet.shares_plane) continue;
+            if (!geometries[hits[i].geometry].plane.shared()) continue;
             std::size_t over = i;
             for (std::size_t k = i + 1; k < hits.size(); ++k)
                 if (in_one_plane(hits[i], hits[k], along) && hits[k].geometry > hits[over].geometry) over = k;
             std::rotate(hits.begin() + static_cast<std::ptrdiff_t>(i), hits.begin() + static_cast<std::ptrdiff_t>(over), hits.begin() + static_cast<std::ptrdiff_t>(over) + 1);
-            if (geometries[hits[i].geometry].sheet.opacity == 1) hits.resize(i + 1);
+            if (geometries[hits[i].geometry].opacity == 1) hits.resize(i + 1);
         }
     }
-    /// In order, each once: tubes and balls however often a ray passes their skin, others where leaves or triangles meet.
-    void tidy(std::vector<Hit>& hits, const Point& along) const {
+    /// Leaves of what lies in the plane of that geometry only what lies under it.
+    void look_under(std::uint32_t geometry, std::vector<Hit>& hits, const Point& along) const {
+        const auto at = std::find_if(hits.begin(), hits.end(), [&](const Hit& h) { return h.geometry == geometry; });
+        if (at == hits.end()) return;
+        const Hit top = *at;
+        std::erase_if(hits, [&](const Hit& h) { return h.geometry >= geometry && in_one_plane(top, h, along); });
+    }
+    /// In order, each once: tubes and balls however often a ray passes their skin, others where leaves or triangles meet. `under`: as of layers().
+    void tidy(std::vector<Hit>& hits, const Point& along, std::uint32_t under = Hit::none) const {
         std::sort(hits.begin(), hits.end(), nearer);
+        if (under != Hit::none) look_under(under, hits, along);
         order_in_planes(hits, along);
         hits.erase(std::unique(hits.begin(), hits.end(), [&](const Hit& a, const Hit& b) { return same_place(a, b); }), hits.end());
         for (std::size_t i = 0; i < hits.size(); ++i)
@@ -175,7 +182,7 @@ struct EmbreeScene::State {
                 hits.erase(std::remove_if(hits.begin() + static_cast<std::ptrdiff_t>(i) + 1, hits.end(), [&](const Hit& h) { return h.geometry == hits[i].geometry; }), hits.end());
     }
     double lets_through(const Geometry& geometry, Shadows shadows) const {
-        const double o = geometry.sheet.opacity;
+        const double o = geometry.opacity;
         return geometry.solid || shadows == Shadows::physical ? 1 - o : 1 - o * o * o;
     }
     double transmittance(const Ray& ray, Shadows shadows, std::vector<Hit>& hits) const {

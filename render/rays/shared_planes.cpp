@@ -9,8 +9,8 @@
 namespace isoparm {
 namespace {
 
-constexpr int kSteps = 6;         // samples along each parameter, less one
-constexpr double kFlat = 1e-6;  // of the scene's size: so far from a plane is in it, for rays in float32
+constexpr int kSteps = 6;          // samples along each parameter, less one
+constexpr double kFlat = 1e-6;     // of the scene's size: so far from a plane is in it, for rays in float32
 constexpr double kOverlap = 1e-4;  // of the scene's size: neighbours share less
 
 /// Where x · normal = height.
@@ -18,29 +18,44 @@ struct Flat {
     Point normal;
     double height = 0;
     std::vector<Point> points;
+    Bounds box;
 };
 
-std::vector<Point> samples(const Surface& surface) {
+std::vector<Point> samples(const Patch& patch, int steps) {
     std::vector<Point> points;
-    for (const Member& m : surface.patches)
-        for (int i = 0; i <= kSteps; ++i)
-            for (int j = 0; j <= (m.patch.domain() == Domain::quad ? kSteps : kSteps - i); ++j) points.push_back(m.patch.point(double(i) / kSteps, double(j) / kSteps));
+    for (int i = 0; i <= steps; ++i)
+        for (int j = 0; j <= (patch.domain() == Domain::quad ? steps : steps - i); ++j) {
+            const Rect r = patch.rect();
+            points.push_back(patch.point(r.u0 + (r.u1 - r.u0) * i / steps, r.v0 + (r.v1 - r.v0) * j / steps));
+        }
     return points;
 }
 
 std::optional<Flat> flat(std::vector<Point> points, double size) {
-    if (points.empty()) return {};
     const Point a = points.front();
     const auto farthest = [&](auto far) { return *std::max_element(points.begin(), points.end(), [&](const Point& p, const Point& q) { return far(p) < far(q); }); };
     const Point b = farthest([&](const Point& p) { return length(p - a); }), c = farthest([&](const Point& p) { return length(cross(b - a, p - a)); });
     const Point n = cross(b - a, c - a);
     if (!(length(n) > 0)) return {};
-    Flat f{normalized(n), 0, {}};
+    Flat f{normalized(n), 0, {}, {a, a}};
     f.height = dot(f.normal, a);
-    for (const Point& p : points)
+    for (const Point& p : points) {
         if (!(std::fabs(dot(f.normal, p) - f.height) <= kFlat * size)) return {};
+        f.box = united(f.box, {p, p});
+    }
     f.points = std::move(points);
     return f;
+}
+/// Few patches are flat, and few samples tell most of them from those.
+std::optional<Flat> flat(const Patch& patch, double size) {
+    if (!flat(samples(patch, 2), size)) return {};
+    return flat(samples(patch, kSteps), size);
+}
+
+bool meet(const Bounds& a, const Bounds& b, double within) {
+    for (int i = 0; i < 3; ++i)
+        if (a.low[i] > b.high[i] + within || b.low[i] > a.high[i] + within) return false;
+    return true;
 }
 
 bool in_plane_of(const Flat& f, const Flat& of, double size) {
@@ -87,16 +102,26 @@ bool may_overlap(const Flat& a, const Flat& b, double size) {
 
 }  // namespace
 
-std::vector<char> shared_planes(const Scene& scene, const std::vector<SceneObject>& objects, double size) {
-    std::vector<char> shared(objects.size(), 0);
-    std::vector<std::optional<Flat>> flats(objects.size());
+std::vector<std::vector<EmbreeScene::Plane>> shared_planes(const Scene& scene, const std::vector<SceneObject>& objects, double size) {
+    std::vector<std::vector<EmbreeScene::Plane>> planes(objects.size());
+    const auto surface = [](const SceneObject& o) { return o.kind == SceneObject::Kind::surface && o.opacity > 0; };
+    if (std::count_if(objects.begin(), objects.end(), surface) < 2) return planes;
+    std::vector<std::vector<std::pair<std::size_t, Flat>>> flats(objects.size());  // by object: patch, and what it is
+    const auto share = [&](std::size_t object, std::size_t patch, const Flat& f) {
+        planes[object].resize(surface_of(scene, objects[object]).patches.size());
+        planes[object][patch] = {f.normal, 4 * kFlat * size};  // each is in its own plane, one in the other's, and a ray in float32 is off
+    };
     for (std::size_t i = 0; i < objects.size(); ++i) {
-        if (objects[i].kind != SceneObject::Kind::surface || !(objects[i].opacity > 0)) continue;
-        flats[i] = flat(samples(surface_of(scene, objects[i])), size);
+        if (!surface(objects[i])) continue;
+        const Composite& patches = surface_of(scene, objects[i]).patches;
+        for (std::size_t p = 0; p < patches.size(); ++p)
+            if (auto f = flat(patches[p].patch, size)) flats[i].emplace_back(p, std::move(*f));
         for (std::size_t k = 0; k < i; ++k)
-            if (flats[i] && flats[k] && in_plane_of(*flats[i], *flats[k], size) && may_overlap(*flats[i], *flats[k], size)) shared[i] = shared[k] = 1;
+            for (const auto& [p, f] : flats[i])
+                for (const auto& [q, g] : flats[k])
+                    if (meet(f.box, g.box, 2 * kFlat * size) && in_plane_of(f, g, size) && may_overlap(f, g, size)) share(i, p, f), share(k, q, g);
     }
-    return shared;
+    return planes;
 }
 
 }  // namespace isoparm

@@ -1,10 +1,12 @@
 // shared_planes.h -- flat surfaces that lie in one plane and cover each other: rays meet both at one place, and a rule must say which is seen.
 #pragma once
+#include "rays/embree_scene.h"
 #include "scene/scene.h"
 
 namespace isoparm {
 
-/// For each object: is it a surface, flat but for rounding, in whose plane another such object lies that may overlap it? By samples of the patches, and their convex hulls in the plane.
-std::vector<char> shared_planes(const Scene& scene, const std::vector<SceneObject>& objects, double size);
+/// For each object and each of its patches the plane that it shares: the patch is flat but for rounding, and in its plane lies such a patch of another object that may overlap it.
+/// Told by samples of the patches, and their convex hulls in the plane. Empty for an object none of whose patches shares its plane.
+std::vector<std::vector<EmbreeScene::Plane>> shared_planes(const Scene& scene, const std::vector<SceneObject>& objects, double size);
 
 }  // namespace isoparm

@@ -20,6 +20,19 @@ bool Sight::in_surface(const Hit& hit, const Ray& ray, const Point& p, double pi
     return off <= (2 * thing.error + 1e-6 * scene_.embree->radius() + 0.3 * pixel) * length(n);
 }
 
+Sight Sight::on(std::size_t object) const {
+    Sight s = *this;
+    s.over_ = scene_.later[object];
+    return s;
+}
+
+double Sight::ball_about(const Point& p) const {
+    double radius = 0;
+    for (const Solid& s : scene_.solids)
+        if (s.points.front() == s.points.back() && distance(s.points.front(), p) <= s.radius) radius = std::max(radius, s.radius);
+    return radius;
+}
+
 double Sight::of(const Point& p, double clear) const {
     const double depth = camera_.depth(p);
     if (!(depth > 0)) return 0;
@@ -33,7 +46,7 @@ double Sight::of(const Point& p, double clear) const {
     scene_.embree->layers(ray, hits);
     double seen = 1;
     for (const Hit& h : hits)
-        if (h.distance < end && !in_surface(h, ray, p, pixel)) seen *= 1 - scene_.things[h.geometry].opacity;
+        if (in_surface(h, ray, p, pixel) ? h.geometry >= over_ && scene_.things[h.geometry].shares_plane : h.distance < end) seen *= 1 - scene_.things[h.geometry].opacity;
     return seen;
 }
 

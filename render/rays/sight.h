@@ -11,6 +11,10 @@ public:
     /// 1: nothing before it; 0: something opaque, or the point is behind the eye. What is less than `clear` scene units
     /// before the point does not count: the tube or surface on which it lies.
     double of(const Point& p, double clear = 0) const;
+    /// The same for points of a surface, that number among the objects: what lies over it in a plane that both share hides them, too (EmbreeScene::Plane).
+    Sight on(std::size_t object) const;
+    /// Radius of the largest ball that p is in, scene units; 0: in none.
+    double ball_about(const Point& p) const;
     const Camera& camera() const { return camera_; }
 
 private:
@@ -19,6 +23,7 @@ private:
     const TracedScene& scene_;
     const Camera& camera_;
     double least_;  // the mesh may be that far before the surface
+    std::uint32_t over_ = Hit::none;  // geometries from here on lie over the points
 };
 
 }  // namespace isoparm

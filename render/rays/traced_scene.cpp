@@ -70,10 +70,11 @@ public:
     }
 
     TracedScene run() {
-        shared_planes_ = shared_planes(scene_, objects_, size_);
+        planes_ = shared_planes(scene_, objects_, size_);
         for (done_ = 0; done_ < objects_.size(); ++done_) {
             report(0, objects_.size());
             add(objects_[done_], objects_.size());
+            result_.later.push_back(static_cast<std::uint32_t>(result_.things.size()));
         }
         result_.embree->commit();
         // The traced mesh is the certified one moved by the rounding of its vertices.
@@ -125,32 +126,33 @@ private:
         thing.mesh = &mesh;
         thing.inside_out = known.inside_out;
         if (o.opacity > 0) {
-            if (known.quads) result_.embree->add_quads(*known.quads, sheet_of(thing));
-            else if (!exact_) result_.embree->add_mesh(mesh, sheet_of(thing));
+            std::vector<EmbreeScene::Plane> planes;
+            for (const MeshPart& part : mesh.parts) planes.push_back(planes_[done_].empty() ? EmbreeScene::Plane{} : planes_[done_][part.member]);
+            if (known.quads) result_.embree->add_quads(*known.quads, thing.opacity, planes);
+            else if (!exact_) result_.embree->add_mesh(mesh, thing.opacity, planes);
             for (const MeshPart& part : mesh.parts) {
+                const EmbreeScene::Plane& plane = planes[std::size_t(&part - mesh.parts.data())];
+                thing.shares_plane = plane.shared();
                 thing.part = &part;
                 if (known.quads) thing.quads = &(*known.quads)[std::size_t(&part - mesh.parts.data())];
                 thing.patch = &surface.patches[part.member].patch;
                 thing.error = grid_ > 0 ? errors_[&surface][std::size_t(&part - mesh.parts.data())] : part.certified_error;
                 result_.things.push_back(thing);
-                if (exact_) add_patch(result_.things.back(), surface);
+                if (exact_) add_patch(result_.things.back(), surface, plane);
             }
             ++group_;
         }
         if (o.boundary && !(o.line.width > 0)) add_boundary(o, surface);
     }
 
-    /// Of the object that is being added.
-    EmbreeScene::Sheet sheet_of(const Thing& thing) const { return {thing.opacity, shared_planes_[done_] != 0}; }
-
-    void add_patch(Thing& thing, const Surface& surface) {
+    void add_patch(Thing& thing, const Surface& surface, const EmbreeScene::Plane& plane) {
         const ExactPatch*& known = exact_of_[thing.patch];
         try {
             if (!known) known = &result_.patches.emplace_back(*thing.patch, size_);
         } catch (const Error& e) {
             throw Error(e.kind(), "surface \"" + surface.name + "\": " + e.what());
         }
-        result_.embree->add_patch(*known, group_, sheet_of(thing));
+        result_.embree->add_patch(*known, group_, thing.opacity, plane);
         thing.flipped = thing.part->flipped;
         thing.error = 0;
         thing.mesh = nullptr;
@@ -287,7 +289,7 @@ private:
     std::map<const Surface*, std::vector<double>> errors_;  // of grids
     std::map<const Patch*, const ExactPatch*> exact_of_;
     std::size_t done_ = 0, surfaces_ = 0;
-    std::vector<char> shared_planes_;
+    std::vector<std::vector<EmbreeScene::Plane>> planes_;
 };
 
 }  // namespace

@@ -23,6 +23,7 @@ struct Thing {
     bool flipped = false;     // without a mesh: its triangles would wind against S_u x S_v
     Isolines isolines;
     ColorScale scale;  // scale.by.what: none, or what the colour says
+    bool shares_plane = false;  // EmbreeScene::Plane
     const Patch* patch = nullptr;
     const Mesh* mesh = nullptr;
     const MeshPart* part = nullptr;
@@ -46,6 +47,7 @@ struct TracedScene {
     std::deque<ExactPatch> patches;
     std::vector<Thing> things;  // by the number of the geometry
     std::vector<Solid> solids;  // of all tubes and balls
+    std::vector<std::uint32_t> later;  // by object: the first geometry of those that were added after its own
     std::unique_ptr<EmbreeScene> embree;
     std::size_t triangles = 0;
     double certified_error = 0;  // of all meshes, float32 included

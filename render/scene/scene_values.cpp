@@ -1,5 +1,7 @@
 #include "scene/scene_values.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -222,13 +224,12 @@ double linear(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055)
 int hex_digit(char c) {
     if (c >= '0' && c <= '9') return c - '0';
     if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
     return -1;
 }
 
-/// The basic colours of CSS (its second level: the sixteen of HTML 4, and orange).
+/// The basic colours of CSS (its second level: the sixteen of HTML 4, and orange), in letters of any case.
 constexpr std::pair<const char*, const char*> kColorNames[] = {
-    {"aqua", "#00ffff"}, {"black", "#000000"}, {"blue", "#0000ff"}, {"fuchsia", "#ff00ff"}, {"gray", "#808080"}, {"green", "#008000"},
+    {"aqua", "#00ffff"}, {"black", "#000000"}, {"blue", "#0000ff"}, {"fuchsia", "#ff00ff"}, {"gray", "#808080"}, {"grey", "#808080"}, {"green", "#008000"},
     {"lime", "#00ff00"}, {"maroon", "#800000"}, {"navy", "#000080"}, {"olive", "#808000"}, {"orange", "#ffa500"}, {"purple", "#800080"},
     {"red", "#ff0000"}, {"silver", "#c0c0c0"}, {"teal", "#008080"}, {"white", "#ffffff"}, {"yellow", "#ffff00"}};
 std::vector<std::string> color_names() {
@@ -247,6 +248,7 @@ Color SceneValues::color(const Json& j) const {
     }
     if (!j.is(Kind::string)) j.expected(expected);
     std::string s = j.string();
+    std::transform(s.begin(), s.end(), s.begin(), [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
     for (const auto& [name, hex] : kColorNames)
         if (s == name) s = hex;
     if ((s.size() != 4 && s.size() != 7) || s[0] != '#') j.expected(expected + did_you_mean(s, color_names()));
