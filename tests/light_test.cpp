@@ -145,6 +145,59 @@ TEST(Light, HalfAHiddenLightIsHalfTheLight) {
     const std::string more = R"(, "screen": {"type": "bilinear", "points": [[-9,-9,1], [-9,9,1], [9,-9,1], [9,9,1]]})";
     EXPECT_LT(seen(objects, light, 256, more), 1e-3);
 }
+/// A pane of index 1.5 that large at that height.
+std::string pane_at(double z) { return ", \"pane\": {\"type\": \"bilinear\", \"points\": [[-9,-9," + std::to_string(z) + "], [-9,9," + std::to_string(z) + "], [9,-9," + std::to_string(z) + "], [9,9," + std::to_string(z) + "]]}"; }
+std::string pane(const std::string& more = "") { return R"(, {"surface": "pane", "material": {"type": "glass", "thin": true})" + more + "}"; }
+
+TEST(Light, PanesLetTheSunThrough) {
+    // Direct light alone: panes throw back what the floor sends up.
+    const auto lit = [](const std::string& objects, const std::string& lamp, const std::string& surfaces) { return double(picture(surfaces, objects, R"({"bounces": 0, "lights": [)" + lamp + "]}", 16).at(0, 0)[1]); };
+    const std::string down = R"({"type": "directional", "direction": [0, 0, -1], "irradiance": 4})", aslant = R"({"type": "directional", "direction": [0.8660254037844386, 0, -0.5], "irradiance": 4})";
+    const double f0 = 2 * 0.04 / 1.04, f60 = pane_fresnel(0.5, 1.5);
+    EXPECT_NEAR(f60, 2 * fresnel(0.5, 1.5) / (1 + fresnel(0.5, 1.5)), 1e-15);
+    EXPECT_NEAR(lit(kGrey + pane(), down, pane_at(1)), (1 - f0) * lit(kGrey, down, ""), 1e-6);
+    EXPECT_NEAR(lit(kGrey + pane(), aslant, pane_at(1)), (1 - f60) * lit(kGrey, aslant, ""), 1e-6);
+    // Tinted (0.5 linear), and two over each other; half as opaque.
+    const std::string tint = R"(, "color": [0.7353569830524495, 0.7353569830524495, 0.7353569830524495])", two = pane_at(1) + R"(, "second": {"type": "bilinear", "points": [[-9,-9,1.5], [-9,9,1.5], [9,-9,1.5], [9,9,1.5]]})";
+    EXPECT_NEAR(lit(kGrey + pane(tint), down, pane_at(1)), 0.5 * (1 - f0) * lit(kGrey, down, ""), 1e-6);
+    EXPECT_NEAR(lit(kGrey + pane(tint) + R"(, {"surface": "second", "material": {"type": "glass", "thin": true}})", down, two), 0.5 * (1 - f0) * (1 - f0) * lit(kGrey, down, ""), 1e-6);
+    EXPECT_NEAR(lit(kGrey + pane(tint + ", \"opacity\": 0.5"), down, pane_at(1)), (0.5 * 0.5 * (1 - f0) + 0.5) * lit(kGrey, down, ""), 1e-6);
+    // What is opaque behind it hides the light still.
+    EXPECT_EQ(lit(kGrey + pane() + R"(, {"surface": "second", "color": "black", "back": "black", "material": "diffuse"})", down, two), 0);
+}
+TEST(Light, PanesLetLampsAndSkiesThrough) {
+    // A square of half side 1 at height 2, by quadrature over it: L cos^2 / d^2 times what the pane between lets through. Found from both ends: at its size, and smaller, where directions seldom find it.
+    for (const double a : {1.0, 0.2}) {
+        const int n = 200;
+        double irradiance = 0;
+        for (int i = 0; i < n; ++i)
+            for (int k = 0; k < n; ++k) {
+                const double x = a * (2 * (i + 0.5) / n - 1), y = a * (2 * (k + 0.5) / n - 1), d2 = x * x + y * y + 4, cosine = 2 / std::sqrt(d2);
+                irradiance += 3 * cosine * cosine / d2 * (1 - pane_fresnel(cosine, 1.5)) * (4 * a * a / n / n);
+            }
+        const std::string side = std::to_string(a), lamp = "{\"type\": \"rectangle\", \"corner\": [-" + side + ",-" + side + ",2], \"edges\": [[0," + std::to_string(2 * a) + ",0], [" + std::to_string(2 * a) + ",0,0]], \"radiance\": 3}";
+        EXPECT_NEAR(seen(kGrey + pane(), lamp, 4096, pane_at(1)), 0.5 / kPi * irradiance, 0.004 * irradiance) << a;
+        EXPECT_NEAR(seen(kGrey + pane(), lamp, 4096, pane_at(2.5)), seen(kGrey, lamp, 4096), 0.02 * irradiance) << "a lamp before the pane is not tinted by it";
+    }
+    // An even sky above a wide pane: of it T comes through, and of what the floor sends up R comes back: l = 0.5 (T + R l).
+    double r = 0;
+    const int n = 100000;
+    for (int i = 0; i < n; ++i) r += pane_fresnel(std::sqrt((i + 0.5) / n), 1.5) / n;
+    const double l = 0.5 * (1 - r) / (1 - 0.5 * r);
+    const auto lit = [&](const std::string& objects, const std::string& more) { return double(picture(pane_at(0.6), objects, R"({"bounces": 16, "lights": [{"type": "environment", "radiance": 1}])" + more + "}", 4096).at(0, 0)[1]); };
+    EXPECT_NEAR(lit(kGrey + pane(), ""), l, 0.006);
+    EXPECT_NEAR(lit(kGrey + pane(), R"(, "caustics": true)"), l, 0.006);
+}
+TEST(Light, GlassHasOneColourFromBothSides) {
+    // A clear body of glass, and white sheets seen from behind, in an even sky: nothing is gained, and nothing lost but what the last bounce leaves.
+    const auto lit = [](const std::string& object) {
+        return double(picture(R"(, "body": {"type": "subdivision", "vertices": [[-1,-1,-1],[1,-1,-1],[1,1,-1],[-1,1,-1],[-1,-1,1],[1,-1,1],[1,1,1],[-1,1,1]], "faces": [[0,3,2,1],[4,5,6,7],[0,1,5,4],[1,2,6,5],[2,3,7,6],[3,0,4,7]]}, "down": {"type": "bilinear", "points": [[-9,-9,0],[9,-9,0],[-9,9,0],[9,9,0]]})",
+                              object, R"({"bounces": 64, "lights": [{"type": "environment", "radiance": 1}]})", 1024).at(0, 0)[1]);
+    };
+    EXPECT_NEAR(lit(R"({"surface": "body", "material": "glass"})"), 1, 0.002);
+    EXPECT_NEAR(lit(R"({"surface": "floor", "color": "white", "material": "diffuse"})"), 1, 0.002);
+    EXPECT_NEAR(lit(R"({"surface": "down", "color": "white", "material": "diffuse"})"), 1, 0.002);
+}
 TEST(Light, SheetsLetTheirPartThrough) {
     const std::string sheets = R"(, "a": {"type": "bilinear", "points": [[-9,-9,1], [-9,9,1], [9,-9,1], [9,9,1]]}, "b": {"type": "bilinear", "points": [[-9,-9,1.5], [-9,9,1.5], [9,-9,1.5], [9,9,1.5]]})";
     const std::string objects = kGrey + R"(, {"surface": "a", "color": "black", "opacity": 0.3, "material": "diffuse"}, {"surface": "b", "color": "black", "opacity": 0.6, "material": "diffuse"})";

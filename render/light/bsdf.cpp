@@ -38,6 +38,11 @@ double fresnel(double cosine, double ior) {
     return 0.5 * (s * s + p * p);
 }
 
+double pane_fresnel(double cosine, double ior) {
+    const double one = fresnel(cosine, ior);
+    return 2 * one / (1 + one);
+}
+
 double mean_fresnel(double n) {  // Walsh 1926, as in Duntley, The Optical Properties of Diffusing Materials, JOSA 32, 1942
     const double n2 = n * n, n4 = n2 * n2;
     return 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) + n2 * (n2 - 1) * (n2 - 1) / std::pow(n2 + 1, 3) * std::log((n - 1) / (n + 1)) -
@@ -121,14 +126,11 @@ Bsdf::Sample Bsdf::sample(const Point& out, double lobe, const Vec2& s) const {
 
 Bsdf::Sample Bsdf::refracted(const Point& out, double lobe) const {
     const double ior = material_.thin ? material_.ior : inside_ ? 1 / material_.ior : material_.ior;
-    double reflected = fresnel(out.z, ior);
-    if (material_.thin) reflected = 2 * reflected / (1 + reflected);  // to and fro between the two sides
+    const double reflected = material_.thin ? pane_fresnel(out.z, ior) : fresnel(out.z, ior);
+    if (lobe < reflected) return mirrored(out);
     Sample r;
     r.density = 1;
-    if (lobe < reflected) {
-        r.direction = {-out.x, -out.y, out.z};
-        r.weight = {1, 1, 1};
-    } else if (material_.thin) {
+    if (material_.thin) {
         r.direction = -out;
         r.weight = color_;
     } else {

@@ -29,6 +29,8 @@ public:
     };
     /// `lobe` in [0,1) decides between coat and base, reflection and refraction.
     Sample sample(const Point& out, double lobe, const Vec2& s) const;
+    /// What a mirror would make of it.
+    static Sample mirrored(const Point& out) { return {{-out.x, -out.y, out.z}, {1, 1, 1}, 1, false}; }
 
 private:
     double coat_density(const Point& out, const Point& in) const;
@@ -47,7 +49,9 @@ private:
 
 /// What a smooth dielectric of relative index `ior` (inside over outside) reflects of unpolarised light; cosine on the side it comes from.
 double fresnel(double cosine, double ior);
-/// The same on average over a hemisphere of light from outside; ior > 1.
+/// The same of a pane, to and fro between its two sides.
+double pane_fresnel(double cosine, double ior);
+/// That of one side on average over a hemisphere of light from outside; ior > 1.
 double mean_fresnel(double ior);
 
 }  // namespace isoparm

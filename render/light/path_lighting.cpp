@@ -18,6 +18,36 @@ const Color kWhite{1, 1, 1};
 /// What the surfel shows, its ink included.
 Color reflectance(const Surfel& s) { return (1 - s.ink_cover) * s.color + s.ink_cover * s.ink; }
 
+/// What a sheet or pane does to light that meets it: the part that is scattered there, and what goes straight on.
+struct Passage {
+    double scattered = 1;
+    Color passes;
+};
+Passage passage(const Thing& thing, const Hit& hit, const Point& along) {
+    const double o = thing.opacity;
+    if (!thing.pane) return {o, (1 - o) * kWhite};
+    const Point n = normal_at(thing, hit);
+    const double cosine = dot(n, along) / length(n), mirrored = pane_fresnel(std::fabs(cosine), thing.material.ior);
+    const bool front = ((cosine < 0) != thing.flipped) != thing.inside_out;
+    return {o * mirrored, o * (1 - mirrored) * (front ? thing.front : thing.back) + (1 - o) * kWhite};
+}
+
+/// The part of the light that passes along each active ray.
+void reaching(const TracedScene& scene, const Ray* rays, int n, std::uint32_t active, Color* part) {
+    if (!scene.panes) {
+        double grey[EmbreeScene::packet];
+        scene.embree->transmittance(rays, n, active, grey, EmbreeScene::Shadows::physical);
+        for (int i = 0; i < n; ++i) part[i] = grey[i] * kWhite;
+        return;
+    }
+    std::vector<Hit> hits;
+    for (int i = 0; i < n; ++i) {
+        if (!(active >> i & 1)) continue;
+        part[i] = scene.embree->crossed(rays[i], hits) ? kWhite : Color{};
+        for (std::size_t k = 0; k < hits.size() && part[i] != Color{}; ++k) part[i] = product(part[i], passage(scene.things[hits[k].geometry], hits[k], rays[i].direction).passes);
+    }
+}
+
 }  // namespace
 
 struct PathLighting::Path {
@@ -28,6 +58,7 @@ struct PathLighting::Path {
     std::uint32_t under = Hit::none;  // layers() for it
     double density = 0;   // of its direction; 0: the only one
     bool spread = false;  // was scattered evenly at some point
+    bool mirrored = false;  // `at` is on a pane, which does nothing else
     bool ended = false;
 };
 
@@ -85,7 +116,7 @@ void PathLighting::shade(const TracedScene& scene, const Surfel* surfels, int n,
 void PathLighting::ask_lights(Batch& batch) const {
     Ray to_light[EmbreeScene::packet];
     Color arriving[EmbreeScene::packet];
-    double part[EmbreeScene::packet];
+    Color part[EmbreeScene::packet];
     std::uint32_t active = 0;
     for (int i = 0; i < batch.n; ++i) {
         const Path& p = batch.paths[i];
@@ -104,9 +135,9 @@ void PathLighting::ask_lights(Batch& batch) const {
         to_light[i] = {p.at.origin, l.direction, l.distance};
         if (arriving[i].x + arriving[i].y + arriving[i].z > 0) active |= 1u << i;
     }
-    batch.scene.embree->transmittance(to_light, batch.n, active, part, EmbreeScene::Shadows::physical);
+    reaching(batch.scene, to_light, batch.n, active, part);
     for (int i = 0; i < batch.n; ++i)
-        if (active >> i & 1) batch.paths[i].light += (batch.paths[i].at.ground ? part[i] - 1 : part[i]) * arriving[i];
+        if (active >> i & 1) batch.paths[i].light += product(batch.paths[i].at.ground ? part[i] - kWhite : part[i], arriving[i]);
 }
 
 void PathLighting::scatter(Batch& batch) const {
@@ -115,7 +146,7 @@ void PathLighting::scatter(Batch& batch) const {
         const LocalFrame frame(p.at.normal);
         const Bsdf bsdf(*p.at.material, reflectance(p.at), !p.at.front);
         const Point out = frame.to_local(p.at.view);
-        const Bsdf::Sample s = bsdf.sample(out, batch.random(p, kChoices).y, batch.random(p, kDirection));
+        const Bsdf::Sample s = p.mirrored ? Bsdf::mirrored(out) : bsdf.sample(out, batch.random(p, kChoices).y, batch.random(p, kDirection));
         const bool caustic = p.spread && !settings_.caustics;  // what the coat, metal or glass would throw now
         const Color even = s.density > 0 && !bsdf.specular() ? bsdf.spread(out, s.direction) / s.density : Color{};
         p.to_lamps = product(p.throughput, caustic ? even : s.weight);
@@ -136,18 +167,32 @@ void PathLighting::scatter(Batch& batch) const {
     }
 }
 
-/// Where each ray is scattered: the first hit, or the first sheet that by chance does not let it pass.
-void PathLighting::find_points(const Batch& batch, Hit* hits) const {
+/// So far on its way the path comes to a pane: what it brings from behind is tinted.
+void PathLighting::pass_pane(Path& p, double distance, const Color& tint) const {
+    const Color lost = kWhite - tint;
+    if (p.at.ground) p.light += -1 * product(product(p.throughput, lost), lights_.sky(p.ray.direction) + lights_.behind(p.ray, p.density));
+    else p.light += product(product(p.to_lamps, lost), lights_.met(p.ray, distance, p.density, false));  // lamps before it are not, which follow() does not know
+    p.throughput = product(p.throughput, tint), p.to_lamps = product(p.to_lamps, tint);
+}
+
+/// Where each ray is scattered: the first hit, or the first sheet or pane that by chance does not let it pass.
+void PathLighting::find_points(Batch& batch, Hit* hits) const {
     const EmbreeScene& embree = *batch.scene.embree;
     Ray rays[EmbreeScene::packet];
     for (int i = 0; i < batch.n; ++i) rays[i] = batch.paths[i].ray;
     if (!embree.translucent()) return embree.intersect(rays, batch.n, hits);
     std::vector<Hit> layers;
     for (int i = 0; i < batch.n; ++i) {
-        embree.layers(rays[i], layers, batch.paths[i].under);
+        Path& p = batch.paths[i];
+        embree.layers(rays[i], layers, p.under);
         hits[i] = Hit{};
-        for (std::size_t k = 0; k < layers.size() && !hits[i].found(); ++k)
-            if (batch.random(batch.paths[i], kChances, static_cast<int>(k)).y < batch.scene.things[layers[k].geometry].opacity) hits[i] = layers[k];
+        p.mirrored = false;
+        for (std::size_t k = 0; k < layers.size() && !hits[i].found(); ++k) {
+            const Thing& thing = batch.scene.things[layers[k].geometry];
+            const Passage way = passage(thing, layers[k], rays[i].direction);
+            if (batch.random(p, kChances, static_cast<int>(k)).y < way.scattered) hits[i] = layers[k], p.mirrored = thing.pane;
+            else if (thing.pane) pass_pane(p, layers[k].distance, way.passes / (1 - way.scattered));
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 // path_lighting.h -- traced light: from every surfel one path goes on, bounce by bounce, until it leaves the scene or ends by chance;
 // at each of its points a light is asked for directly, too. With caustics, the mean over all samples is the solution of the rendering
-// equation cut after `bounces`, but for light of one direction that glass bends: no path finds it.
+// equation cut after `bounces`, but for light of one direction that glass bends: no path finds it. Panes, of thin glass, bend none: light goes straight on behind
+// them, to lights and from them, as behind sheets.
 #pragma once
 #include "light/lights.h"
 #include "light/shade.h"
@@ -21,8 +22,9 @@ private:
     struct Path;
     struct Batch;
     void ask_lights(Batch& batch) const;
+    void pass_pane(Path& path, double distance, const Color& tint) const;
     void scatter(Batch& batch) const;
-    void find_points(const Batch& batch, Hit* hits) const;
+    void find_points(Batch& batch, Hit* hits) const;
     void follow(Batch& batch) const;
 
     LightingSettings settings_;

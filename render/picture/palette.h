@@ -36,7 +36,7 @@ inline Color point_color() { return linear_from_srgb(0.76, 0.20, 0.16); }
 /// The other side of a surface: grey with a touch of the complement, so that one look tells the sides apart.
 inline Color back_color(const Color& front) {
     const double grey = luminance(front);
-    const auto channel = [&](double c) { return std::max(0.0, 1.05 * (grey - 0.15 * (c - grey))); };
+    const auto channel = [&](double c) { return std::clamp(1.05 * (grey - 0.15 * (c - grey)), 0.0, 1.0); };
     return {channel(front.x), channel(front.y), channel(front.z)};
 }
 

@@ -113,6 +113,9 @@ void Tracer::trace(const RayLanes& rays, const SampleOf* of, int n, Rgba* seen) 
         std::vector<Hit> hits;
         for (int i = 0; i < n; ++i) {
             scene_.embree->layers(rays[i], hits);
+            // What is behind a pane is seen by the light that comes through it.
+            const auto last = std::find_if(hits.begin(), hits.end(), [&](const Hit& h) { return scene_.things[h.geometry].opacity == 1; });
+            if (last != hits.end()) hits.erase(last + 1, hits.end());
             if (const auto ground = ground_hit(rays[i], std::numeric_limits<double>::infinity())) {
                 while (!hits.empty() && hits.back().distance >= ground->distance) hits.pop_back();
                 const bool open = hits.empty() || scene_.things[hits.back().geometry].opacity < 1;

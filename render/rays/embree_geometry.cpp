@@ -19,7 +19,7 @@ EmbreeScene::EmbreeScene(const Point& centre) : state_(std::make_unique<State>()
 }
 EmbreeScene::~EmbreeScene() = default;
 
-std::uint32_t EmbreeScene::add_mesh(const Mesh& mesh, double opacity, const std::vector<Plane>& planes) {
+std::uint32_t EmbreeScene::add_mesh(const Mesh& mesh, const Sheet& sheet, const std::vector<Plane>& planes) {
     State& s = *state_;
     FloatVertices& vertices = s.shared.emplace_back(mesh.positions.size(), s.centre);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) vertices.set(i, mesh.positions[i]);
@@ -35,13 +35,13 @@ std::uint32_t EmbreeScene::add_mesh(const Mesh& mesh, double opacity, const std:
         if (!index && !part.triangles.empty()) s.check("taking over a mesh");
         for (const auto& triangle : part.triangles)
             for (const std::uint32_t corner : triangle) *index++ = part.vertex[corner];
-        const std::uint32_t id = s.attach(g, opacity, false, false, planes.empty() ? Plane{} : planes[std::size_t(&part - mesh.parts.data())]);
+        const std::uint32_t id = s.attach(g, sheet, false, false, planes.empty() ? Plane{} : planes[std::size_t(&part - mesh.parts.data())]);
         if (first == Hit::none) first = id;
     }
     return first;
 }
 
-std::uint32_t EmbreeScene::add_quads(const std::vector<QuadPart>& parts, double opacity, const std::vector<Plane>& planes) {
+std::uint32_t EmbreeScene::add_quads(const std::vector<QuadPart>& parts, const Sheet& sheet, const std::vector<Plane>& planes) {
     State& s = *state_;
     s.quads = true;
     // Hierarchies that hold no vertices, but look them up, are a third smaller.
@@ -53,19 +53,19 @@ std::uint32_t EmbreeScene::add_quads(const std::vector<QuadPart>& parts, double 
         rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, part.vertices().data(), 0, 3 * sizeof(float), part.vertices().size());
         rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, part.quads().data(), 0, 4 * sizeof(std::uint32_t), part.quads().size());
         s.extent.add(part.vertices().extent());
-        const std::uint32_t id = s.attach(g, opacity, false, true, planes.empty() ? Plane{} : planes[std::size_t(&part - parts.data())]);
+        const std::uint32_t id = s.attach(g, sheet, false, true, planes.empty() ? Plane{} : planes[std::size_t(&part - parts.data())]);
         if (first == Hit::none) first = id;
     }
     return first;
 }
 
-std::uint32_t EmbreeScene::add_patch(const ExactPatch& patch, std::uint32_t group, double opacity, const Plane& plane) {
+std::uint32_t EmbreeScene::add_patch(const ExactPatch& patch, std::uint32_t group, const Sheet& sheet, const Plane& plane) {
     State& s = *state_;
     for (std::size_t i = 0; i < patch.leaves(); ++i)
         for (const Point& p : {patch.box(i).low, patch.box(i).high}) s.extent.radius = std::max(s.extent.radius, length(p - s.centre));
     s.patches = true;
     RTCGeometry g = rtcNewGeometry(s.device, RTC_GEOMETRY_TYPE_USER);
-    Geometry& data = s.geometries.emplace_back(Geometry{0, group, opacity, plane, false, false, &patch, &s.quick.emplace_back(patch, s.centre), &s.centre, &s.extent.radius});
+    Geometry& data = s.geometries.emplace_back(Geometry{0, group, sheet, plane, false, false, &patch, &s.quick.emplace_back(patch, s.centre), &s.centre, &s.extent.radius});
     s.translucent = s.translucent || !data.ends_rays();
     rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(patch.leaves()));
     rtcSetGeometryUserData(g, &data);

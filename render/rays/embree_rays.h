@@ -52,7 +52,7 @@ public:
 struct Geometry {
     std::uint32_t id = 0;
     std::uint32_t mesh = 0;  // number of the mesh it is a part of; meaningless for others
-    double opacity = 1;
+    EmbreeScene::Sheet sheet{1};
     EmbreeScene::Plane plane;
     bool solid = false;  // a tube or ball: counts once however often a ray passes through its skin
     bool quads = false;  // a QuadPart
@@ -60,7 +60,8 @@ struct Geometry {
     const QuickPatch* quick = nullptr;  // of it; nullptr where float32 is of no use
     const Point* centre = nullptr;
     const double* radius = nullptr;  // of the scene, once it is complete
-    bool ends_rays() const { return opacity == 1 && !plane.shared(); }
+    bool ends_rays() const { return opaque() && !plane.shared(); }
+    bool opaque() const { return sheet.opacity == 1 && !sheet.pane; }
 };
 
 /// Of each ray, what was surely met, as far as float32 tells: the hit that ends first.

@@ -125,6 +125,8 @@ void EmbreeScene::layers(const Ray& ray, std::vector<Hit>& hits, std::uint32_t u
     for (Hit& h : hits) h.distance += start;
 }
 
+bool EmbreeScene::crossed(const Ray& ray, std::vector<Hit>& hits) const { return state_->crossed(ray, hits); }
+
 template <class Rays> void EmbreeScene::shadows(const Rays& rays, int n, std::uint32_t active, double* result, Shadows shadows) const {
     const State& s = *state_;
     std::fill(result, result + n, 1.0);

@@ -45,6 +45,12 @@ struct HitLanes {
 class EmbreeScene {
 public:
     static constexpr int packet = 16;  // rays a call
+    /// What a surface does to rays.
+    struct Sheet {
+        double opacity;
+        bool pane;  // rays may go on behind it, unbent, whatever its opacity: see crossed()
+        Sheet(double its_opacity, bool is_pane = false) : opacity(its_opacity), pane(is_pane) {}
+    };
     /// A plane in which flat surfaces lie that cover each other: the one that was added last lies over the others, and rays look behind each of them.
     struct Plane {
         Point normal;       // of unit length
@@ -60,11 +66,11 @@ public:
 
     /// One geometry a part, numbered one after the other; returns the first. All parts share the vertices, so that rays
     /// do not slip through between them. `planes`: by part; empty where none is shared.
-    std::uint32_t add_mesh(const Mesh& mesh, double opacity, const std::vector<Plane>& planes = {});
+    std::uint32_t add_mesh(const Mesh& mesh, const Sheet& sheet, const std::vector<Plane>& planes = {});
     /// The same of a mesh in less than half of the memory, which rays take longer to meet. Its parts must live as long, in their places; and they have the scene's centre.
-    std::uint32_t add_quads(const std::vector<QuadPart>& parts, double opacity, const std::vector<Plane>& planes = {});
+    std::uint32_t add_quads(const std::vector<QuadPart>& parts, const Sheet& sheet, const std::vector<Plane>& planes = {});
     /// The patch itself, which must live as long; its neighbours are those of the same `group`.
-    std::uint32_t add_patch(const ExactPatch& patch, std::uint32_t group, double opacity, const Plane& plane = {});
+    std::uint32_t add_patch(const ExactPatch& patch, std::uint32_t group, const Sheet& sheet, const Plane& plane = {});
     /// Round tubes about cubic Bezier curves; returns the geometry's number.
     std::uint32_t add_tubes(const std::vector<std::array<Point, 4>>& pieces, double radius, double opacity);
     std::uint32_t add_balls(const std::vector<Point>& centres, double radius, double opacity);
@@ -89,9 +95,11 @@ public:
     void intersect(const RayLanes& rays, int n, HitLanes& hits) const;
     /// The nearest hit of one ray, whatever its opacity.
     Hit first(const Ray& ray) const;
-    /// Every hit from the nearest to the first opaque one, in order. A tube or ball that lets light through counts
+    /// Every hit from the nearest to the first opaque one that is no pane, in order. A tube or ball that lets light through counts
     /// once. `under`: of what lies in the plane of that geometry, which shares it, only what lies under it.
     void layers(const Ray& ray, std::vector<Hit>& hits, std::uint32_t under = Hit::none) const;
+    /// The same of a ray that has an end; false, and hits mean nothing, where something opaque that is no pane is before it.
+    bool crossed(const Ray& ray, std::vector<Hit>& hits) const;
     /// How dark the shadow of a sheet is: as its opacity asks for, or, as in figures, lighter, so that sheets under sheets keep their colours.
     enum class Shadows { light, physical };
     /// The part of light that passes along each of n <= packet rays; 1 where `active` has no bit.

@@ -57,8 +57,8 @@ struct EmbreeScene::State {
                 std::string("Embree failed while ") + doing +
                 (e == RTC_ERROR_OUT_OF_MEMORY ? ": out of memory" : ": error " + std::to_string(e)));
     }
-    std::uint32_t attach(RTCGeometry g, double opacity, bool solid, bool of_quads = false, const Plane& plane = {}) {
-        Geometry& data = geometries.emplace_back(Geometry{0, meshes, opacity, plane, solid, of_quads});
+    std::uint32_t attach(RTCGeometry g, const Sheet& sheet, bool solid, bool of_quads = false, const Plane& plane = {}) {
+        Geometry& data = geometries.emplace_back(Geometry{0, meshes, sheet, plane, solid, of_quads});
         rtcSetGeometryUserData(g, &data);
         if (!data.ends_rays()) {
             translucent = true;
@@ -161,7 +161,7 @@ struct EmbreeScene::State {
             for (std::size_t k = i + 1; k < hits.size(); ++k)
                 if (in_one_plane(hits[i], hits[k], along) && hits[k].geometry > hits[over].geometry) over = k;
             std::rotate(hits.begin() + static_cast<std::ptrdiff_t>(i), hits.begin() + static_cast<std::ptrdiff_t>(over), hits.begin() + static_cast<std::ptrdiff_t>(over) + 1);
-            if (geometries[hits[i].geometry].opacity == 1) hits.resize(i + 1);
+            if (geometries[hits[i].geometry].opaque()) hits.resize(i + 1);
         }
     }
     /// Leaves of what lies in the plane of that geometry only what lies under it.
@@ -182,10 +182,10 @@ struct EmbreeScene::State {
                 hits.erase(std::remove_if(hits.begin() + static_cast<std::ptrdiff_t>(i) + 1, hits.end(), [&](const Hit& h) { return h.geometry == hits[i].geometry; }), hits.end());
     }
     double lets_through(const Geometry& geometry, Shadows shadows) const {
-        const double o = geometry.opacity;
+        const double o = geometry.sheet.opacity;
         return geometry.solid || shadows == Shadows::physical ? 1 - o : 1 - o * o * o;
     }
-    double transmittance(const Ray& ray, Shadows shadows, std::vector<Hit>& hits) const {
+    bool crossed(const Ray& ray, std::vector<Hit>& hits) const {
         hits.clear();
         LayerQuery query;
         query.hits = &hits;
@@ -201,9 +201,13 @@ struct EmbreeScene::State {
         occluded_1(scene, query, &r);
         rethrow(query);
         note(&open, 1);
-        if (r.tfar < 0) return 0;
+        if (r.tfar < 0) return false;
         for (Hit& h : hits) to_half(h);
         tidy(hits, ray.direction);
+        return hits.empty() || !geometries[hits.back().geometry].opaque();
+    }
+    double transmittance(const Ray& ray, Shadows shadows, std::vector<Hit>& hits) const {
+        if (!crossed(ray, hits)) return 0;
         double light = 1;
         for (const Hit& h : hits) light *= lets_through(geometries[h.geometry], shadows);
         return light;

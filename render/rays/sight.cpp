@@ -11,11 +11,7 @@ Sight::Sight(const TracedScene& scene, const Camera& camera)
 bool Sight::in_surface(const Hit& hit, const Ray& ray, const Point& p, double pixel) const {
     const Thing& thing = scene_.things[hit.geometry];
     if (!thing.patch) return false;
-    Point n = hit.normal;
-    if (!thing.mesh) {
-        const PointFrame f = thing.patch->frame(hit.u, hit.v);
-        n = cross(Point{f.x.coefficient(1, 0), f.y.coefficient(1, 0), f.z.coefficient(1, 0)}, Point{f.x.coefficient(0, 1), f.y.coefficient(0, 1), f.z.coefficient(0, 1)});
-    }
+    const Point n = normal_at(thing, hit);
     const double off = std::fabs(dot(n, p - (ray.origin + hit.distance * ray.direction)));
     return off <= (2 * thing.error + 1e-6 * scene_.embree->radius() + 0.3 * pixel) * length(n);
 }

@@ -111,10 +111,12 @@ private:
         const Mesh& mesh = *known.mesh;
         Thing thing;
         thing.front = color_of(o, surface_color(surfaces_++));
-        // Both sides of a translucent sheet look alike, so that it keeps its colour where several lie over each other.
-        thing.back = o.back.value_or(o.opacity < 1 ? thing.front : back_color(thing.front));
+        // Both sides of a translucent sheet look alike, so that it keeps its colour where several lie over each other; and glass has one colour of what passes.
+        thing.back = o.back.value_or(o.opacity < 1 || o.material.kind == Material::Kind::glass ? thing.front : back_color(thing.front));
         thing.opacity = o.opacity;
         thing.material = o.material;
+        thing.pane = scene_.lighting && o.opacity > 0 && o.material.kind == Material::Kind::glass && o.material.thin;
+        result_.panes = result_.panes || thing.pane;
         thing.isolines = o.isolines;
         if (o.color_by.what != ColorBy::What::none) {
             std::vector<char> flipped(surface.patches.size());
@@ -128,8 +130,8 @@ private:
         if (o.opacity > 0) {
             std::vector<EmbreeScene::Plane> planes;
             for (const MeshPart& part : mesh.parts) planes.push_back(planes_[done_].empty() ? EmbreeScene::Plane{} : planes_[done_][part.member]);
-            if (known.quads) result_.embree->add_quads(*known.quads, thing.opacity, planes);
-            else if (!exact_) result_.embree->add_mesh(mesh, thing.opacity, planes);
+            if (known.quads) result_.embree->add_quads(*known.quads, {thing.opacity, thing.pane}, planes);
+            else if (!exact_) result_.embree->add_mesh(mesh, {thing.opacity, thing.pane}, planes);
             for (const MeshPart& part : mesh.parts) {
                 const EmbreeScene::Plane& plane = planes[std::size_t(&part - mesh.parts.data())];
                 thing.shares_plane = plane.shared();
@@ -152,7 +154,7 @@ private:
         } catch (const Error& e) {
             throw Error(e.kind(), "surface \"" + surface.name + "\": " + e.what());
         }
-        result_.embree->add_patch(*known, group_, thing.opacity, plane);
+        result_.embree->add_patch(*known, group_, {thing.opacity, thing.pane}, plane);
         thing.flipped = thing.part->flipped;
         thing.error = 0;
         thing.mesh = nullptr;
@@ -300,6 +302,12 @@ TracedScene build_traced_scene(const Scene& scene, double tolerance, const std::
 TracedScene build_traced_scene(const Scene& scene, const std::vector<SceneObject>& objects, double tolerance, const std::function<void(double)>& progress,
                                bool exact, int grid, std::size_t large) {
     return Builder(scene, objects, tolerance, progress, exact, grid, large).run();
+}
+
+Point normal_at(const Thing& thing, const Hit& hit) {
+    if (!thing.patch || thing.mesh) return hit.normal;
+    const PointFrame f = thing.patch->frame(hit.u, hit.v);
+    return cross(Point{f.x.coefficient(1, 0), f.y.coefficient(1, 0), f.z.coefficient(1, 0)}, Point{f.x.coefficient(0, 1), f.y.coefficient(0, 1), f.z.coefficient(0, 1)});
 }
 
 std::array<Point, 3> corners_of(const Thing& thing, std::uint32_t primitive) {

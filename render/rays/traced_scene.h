@@ -24,11 +24,14 @@ struct Thing {
     Isolines isolines;
     ColorScale scale;  // scale.by.what: none, or what the colour says
     bool shares_plane = false;  // EmbreeScene::Plane
+    bool pane = false;          // thin glass in traced light: light passes it straight on
     const Patch* patch = nullptr;
     const Mesh* mesh = nullptr;
     const MeshPart* part = nullptr;
     const QuadPart* quads = nullptr;  // of a large mesh: it has the triangles and vertices, which mesh and part then have not
 };
+/// Geometric, not of unit length, to whichever side.
+Point normal_at(const Thing& thing, const Hit& hit);
 /// The triangle that was hit.
 std::array<Point, 3> corners_of(const Thing& thing, std::uint32_t primitive);
 std::array<Vec2, 3> parameters_of(const Thing& thing, std::uint32_t primitive);
@@ -49,6 +52,7 @@ struct TracedScene {
     std::vector<Solid> solids;  // of all tubes and balls
     std::vector<std::uint32_t> later;  // by object: the first geometry of those that were added after its own
     std::unique_ptr<EmbreeScene> embree;
+    bool panes = false;  // there are some
     std::size_t triangles = 0;
     double certified_error = 0;  // of all meshes, float32 included
 };
