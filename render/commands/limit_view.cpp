@@ -26,7 +26,8 @@ Scene scene_of(LimitComposite&& surfaces) {
         o.name = s.name, o.color = surface_color(1);
         scene.objects.push_back(o);
     }
-    scene.panels = {{0, 1, {}, {}}, {1, 2, {}, {}}};
+    scene.panels.resize(2);
+    for (std::size_t i = 0; i < 2; ++i) scene.panels[i].first = i, scene.panels[i].last = i + 1;
     scene.panel_columns = 2;
     scene.camera.fit = true;
     scene.image.samples = 16, scene.image.background = Color{1, 1, 1};
