@@ -26,7 +26,8 @@ TEST(MathText, SignsHaveTheSpaceThatTexGivesThem) {
     EXPECT_NEAR(wide("1=2"), wide("1") + wide("{=}") + wide("2") + 200 * thick, 1e-6);
 }
 TEST(MathText, RootsHaveABarOverAllThatTheyAreOf) {
-    for (const auto& [text, tex] : {std::pair<std::string, std::string>{"\\sqrt{2}", "$\\sqrt{2}$"}, {"1+\\sqrt{x_1^2+y^{2}}-a", "$1+\\sqrt{x_{1}^{2}+y^{2}}-a$"}, {"\\sqrt{1+\\sqrt{x}}^2", "$\\sqrt{1+\\sqrt{x}}^{2}$"}, {"e^{\\sqrt{x}}", "$e^{\\sqrt{x}}$"}, {"2\\sqrt[3]{x}-\\sqrt[n_1]{y^2}", "$2\\sqrt[3]{x}-\\sqrt[n_{1}]{y^{2}}$"}, {"\\sqrt[]{x}", "$\\sqrt{x}$"}})
+    for (const auto& [text, tex] : {std::pair<std::string, std::string>{"\\sqrt{2}", "$\\sqrt{2}$"}, {"1+\\sqrt{x_1^2+y^{2}}-a", "$1+\\sqrt{x_{1}^{2}+y^{2}}-a$"}, {"\\sqrt{1+\\sqrt{x}}^2", "$\\sqrt{1+\\sqrt{x}}^{2}$"}, {"e^{\\sqrt{x}}", "$e^{\\sqrt{x}}$"}, {"2\\sqrt[3]{x}-\\sqrt[n_1]{y^2}", "$2\\sqrt[3]{x}-\\sqrt[n_{1}]{y^{2}}$"}, {"\\sqrt[]{x}", "$\\sqrt{x}$"}, {"\\sqrt[\\text{ab}c]{x}", "$\\sqrt[\\operatorname{ab}c]{x}$"},
+                                                                      {"\\sqrt[{a]b}]{y}", "$\\sqrt[{a]b}]{y}$"}, {"\\sqrt[\\sqrt[3]{2}]{x}", "$\\sqrt[{\\sqrt[3]{2}}]{x}$"}})
         EXPECT_EQ(tex_of(parse_math_text(text)), tex) << text;
     for (const std::string inside : {"2", "x^2+1", "\\hat{X}", "H_i^{(3)}"}) {
         const MathText text = parse_math_text("\\sqrt{" + inside + "}");

@@ -83,8 +83,8 @@ void tell_if_blank(const Scene& scene, const Picture& picture, const std::string
     else if (!part && blank(picture, scene.image.background)) std::fprintf(stderr, "isoparm: note: %s shows the background and nothing else: see where the camera looks, and whether the objects have an opacity of 0\n", name.c_str());
 }
 
-/// Whether the picture is as good as was asked for, as an exit code; or kUnfinished, and then it is written only with `in_any_case`. `name`: in messages.
-int render_one(const Scene& scene, const std::string& output, const std::string& name, RenderOptions how, const Options& options, bool in_any_case) {
+/// Whether the picture is as good as was asked for, as an exit code; or kUnfinished, and then `one_of_many`, a frame, is not written. `name`: in messages.
+int render_one(const Scene& scene, const std::string& output, const std::string& name, RenderOptions how, const Options& options, bool one_of_many) {
     const bool quiet = options.quiet();
     finite_diagonal(scene, bounding_box(scene));
     how = rendering_of(std::move(how), output);
@@ -94,9 +94,9 @@ int render_one(const Scene& scene, const std::string& output, const std::string&
         if (bar.enabled()) how.tell_noise = [&](double noise) { bar.note("noise " + short_text(noise, 3)); };
         return render(scene, how);
     }();
-    if (!picture.whole && !in_any_case) return kUnfinished;
+    if (!picture.whole && one_of_many) return kUnfinished;
     write_picture(options, output, scene, how, picture);
-    tell_if_blank(scene, picture, name, how.crop.has_value());
+    if (!quiet && !one_of_many) tell_if_blank(scene, picture, name, how.crop.has_value());
     if (!quiet) std::fprintf(stderr, "%s: %s\n", name.c_str(), summary_of(picture).c_str());
     const SampleCount& n = picture.samples;
     if (!picture.whole) return kUnfinished;
@@ -119,7 +119,7 @@ int render_long(const Scene& scene, const std::string& output, RenderOptions how
     if (options.has("--preview")) how.preview = [&](const Picture& picture) { write_picture(options, output, scene, how, picture); };
     const Interruption interruption(options.quiet());
     how.stop = [&] { return interruption.signal() != 0; };
-    const int code = render_one(scene, output, output, how, options, true);
+    const int code = render_one(scene, output, output, how, options, false);
     if (code == kUnfinished) {
         if (!options.quiet())
             std::fprintf(stderr, "isoparm: %s was written before it was finished%s\n", output.c_str(), how.checkpoint.path.empty() ? "" : (", the same command goes on with it (" + how.checkpoint.path + ")").c_str());
@@ -191,7 +191,7 @@ int render_frames(const std::string& output, RenderOptions how, const Options& o
         Scene now = scene_of(options, f.parameters);
         if (table) table->turn(now, f.degrees);
         const std::string name = film ? output + ", frame " + std::to_string(done) + " of " + std::to_string(frames.size()) : f.path;
-        const int good = interruption.signal() ? kUnfinished : render_one(now, f.path, name, how, options, false);
+        const int good = interruption.signal() ? kUnfinished : render_one(now, f.path, name, how, options, true);
         if (good == kUnfinished) {
             if (!options.quiet())
                 std::fprintf(stderr, "isoparm: ended after %d of %zu frames%s\n", k, frames.size(), kept ? (", the same command goes on with them (" + *kept + ")").c_str() : "");

@@ -111,7 +111,8 @@ private:
         for (const Point& p : points) obstacles_.push_back({camera_.project(p), 0.5 * o_.line.width * pixel_});
     }
     double opacity(const Point& p) const {
-        return o_.opacity * opacity_of(o_.line.hidden, o_.line.hidden == Hidden::show ? 1 : sight_.of(p, std::max(clear_, 2 * sight_.ball_about(p))));
+        const double ball = sight_.ball_about(p), small = letter_ * camera_.pixel_size(camera_.depth(p));
+        return o_.opacity * opacity_of(o_.line.hidden, o_.line.hidden == Hidden::show ? 1 : sight_.of(p, ball <= small ? std::max(clear_, 1.01 * ball) : clear_));
     }
 
     void arrow(const Point& tip, const Vec2& along) {
@@ -204,7 +205,7 @@ private:
     const Sight& sight_;
     const Camera& camera_;
     double pixel_, letter_;
-    double clear_ = 0;  // what is so close to an axis does not hide it; nor does a ball on a tick hide the number
+    double clear_ = 0;  // what is so close to an axis does not hide it; nor does a ball no larger than a letter hide the tick and the number that it is about
     std::vector<Obstacle>& obstacles_;
     std::vector<MarkRequest>& marks_;
     Drawing& drawing_;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 
@@ -52,6 +53,16 @@ std::string mathematics(const TextRun& run) {
 class Writer {
 public:
     std::string run(const MathText& text) {
+        write(text);
+        leave();
+        return out_;
+    }
+
+private:
+    struct Level {
+        double scale, rise;
+    };
+    void write(const MathText& text) {
         for (std::size_t i = 0; i < text.size(); ++i) {
             const std::size_t sign = root_of(text, i);
             const MathText index(text.begin() + static_cast<std::ptrdiff_t>(i), text.begin() + static_cast<std::ptrdiff_t>(sign));
@@ -61,14 +72,7 @@ public:
             else formula(text[i]);
             while (!roots_.empty() && roots_.back().last == i) end_root();
         }
-        leave();
-        return out_;
     }
-
-private:
-    struct Level {
-        double scale, rise;
-    };
     void words(const TextRun& r) {
         leave();
         for (const std::string& c : characters(r.text)) {
@@ -76,22 +80,27 @@ private:
             out_ += name.empty() ? escaped(c) : "$" + name + "$";
         }
     }
-    /// The radical sign whose index begins there; `i` where none does.
+    /// The radical sign whose index begins there, the outer one of several; `i` where none does.
     static std::size_t root_of(const MathText& text, std::size_t i) {
-        for (std::size_t sign = i + 1; sign < text.size(); ++sign)
+        for (std::size_t sign = text.size() - 1; sign > i; --sign)
             if (text[sign].index > 0 && text[sign].index == sign - i) return sign;
         return i;
     }
+    static std::string index_of(MathText index) {
+        const TextRun base = *std::max_element(index.begin(), index.end(), [](const TextRun& a, const TextRun& b) { return a.scale < b.scale; });
+        for (TextRun& i : index) i.scale /= base.scale, i.rise = (i.rise - base.rise) / base.scale;
+        Writer writer;  // within a formula, and a root
+        writer.inside_ = true;
+        writer.roots_.push_back({std::string::npos, 1});
+        writer.write(index);
+        while (writer.levels_.size() > 1) writer.close();
+        return writer.out_.find(']') == std::string::npos ? writer.out_ : "{" + writer.out_ + "}";
+    }
     /// \sqrt, up to the end of that run.
-    void root(const TextRun& r, std::size_t last, MathText index) {
+    void root(const TextRun& r, std::size_t last, const MathText& index) {
         formula({"", false, false, r.scale, r.rise});
         out_ += "\\sqrt";
-        if (!index.empty()) {
-            const TextRun first = index.front();
-            for (TextRun& i : index) i.scale /= first.scale, i.rise = (i.rise - first.rise) / first.scale;
-            const std::string tex = tex_of(index);
-            out_ += "[" + tex.substr(1, tex.size() - 2) + "]";  // without its dollars
-        }
+        if (!index.empty()) out_ += "[" + index_of(index) + "]";
         out_ += "{";
         roots_.push_back({last, levels_.size()});
         levels_.push_back({r.scale, r.rise});

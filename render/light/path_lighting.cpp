@@ -28,6 +28,7 @@ Passage passage(const Thing& thing, const Hit& hit, const Point& along) {
     if (!thing.pane) return {o, (1 - o) * kWhite};
     const Point n = normal_at(thing, hit);
     const double cosine = dot(n, along) / length(n), mirrored = pane_fresnel(std::fabs(cosine), thing.material.ior);
+    // The side that a path meets or a light's ray comes to from the path: of panes of two colours the viewer's, in both.
     const bool front = ((cosine < 0) != thing.flipped) != thing.inside_out;
     return {o * mirrored, o * (1 - mirrored) * (front ? thing.front : thing.back) + (1 - o) * kWhite};
 }

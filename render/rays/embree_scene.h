@@ -51,7 +51,7 @@ public:
         bool pane;  // rays may go on behind it, unbent, whatever its opacity: see crossed()
         Sheet(double its_opacity, bool is_pane = false) : opacity(its_opacity), pane(is_pane) {}
     };
-    /// A plane in which flat surfaces lie that cover each other: the one that was added last lies over the others, and rays look behind each of them.
+    /// What is known of a plane in which flat surfaces lie that cover each other: the one that was added last lies over the others, and rays look behind each of them.
     struct Plane {
         Point normal;       // of unit length
         double within;      // hits so close to each other along it are at one place, scene units; 0: the plane is not shared

@@ -148,7 +148,7 @@ struct EmbreeScene::State {
         return !ga.solid && !gb.solid && ga.mesh == gb.mesh && b.distance - a.distance < 1e-6 * extent.radius &&
                near_edge(a) && near_edge(b);
     }
-    /// At one place, but for rounding, in a plane that both share?
+    /// At one place, but for rounding, seen along the plane of a, both in planes that are shared? That these are one plane is not asked for: where two of them cross, it makes no difference.
     bool in_one_plane(const Hit& a, const Hit& b, const Point& along) const {
         const Plane &p = geometries[a.geometry].plane, &q = geometries[b.geometry].plane;
         return p.shared() && q.shared() && std::fabs((a.distance - b.distance) * dot(p.normal, along)) <= p.within;

@@ -3,7 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "picture/palette.h"
+
 namespace isoparm {
+namespace {
+
+/// The part that is lost of what is behind it: panes tint, bodies of glass bend.
+double hidden_by(const Thing& thing) { return thing.pane ? thing.opacity * (1 - luminance(thing.front)) : thing.opacity; }
+
+}  // namespace
 
 Sight::Sight(const TracedScene& scene, const Camera& camera)
     : scene_(scene), camera_(camera), least_(4 * scene.certified_error + 1e-4 * scene.embree->radius()) {}
@@ -18,15 +26,32 @@ bool Sight::in_surface(const Hit& hit, const Ray& ray, const Point& p, double pi
 
 Sight Sight::on(std::size_t object) const {
     Sight s = *this;
-    s.over_ = scene_.later[object];
+    s.first_ = object > 0 ? scene_.later[object - 1] : 0, s.later_ = scene_.later[object];
     return s;
 }
 
 double Sight::ball_about(const Point& p) const {
     double radius = 0;
     for (const Solid& s : scene_.solids)
-        if (s.points.front() == s.points.back() && distance(s.points.front(), p) <= s.radius) radius = std::max(radius, s.radius);
+        if (s.points == std::array<Point, 4>{p, p, p, p}) radius = std::max(radius, s.radius);
     return radius;
+}
+
+double Sight::beside(const Point& p, const Vec2& at, double pixel) const {
+    constexpr double kAside = 0.35, kAlong = 0.5;  // pixels: the corners of a square, and between them
+    constexpr Vec2 kPlaces[] = {{kAlong, 0}, {kAside, kAside}, {0, kAlong}, {-kAside, kAside}, {-kAlong, 0}, {-kAside, -kAside}, {0, -kAlong}, {kAside, -kAside}};
+    std::vector<Hit> hits;
+    double most = 0;
+    for (const Vec2& aside : kPlaces) {
+        const Ray ray = camera_.ray(at.x + aside.x, at.y + aside.y);
+        scene_.embree->layers(ray, hits);
+        double seen = 1;
+        const auto surface = std::find_if(hits.begin(), hits.end(), [&](const Hit& h) { return own(h) && in_surface(h, ray, p, pixel); });
+        if (surface == hits.end()) continue;
+        for (auto h = hits.begin(); h != surface; ++h) seen *= own(*h) ? 1 : 1 - hidden_by(scene_.things[h->geometry]);
+        most = std::max(most, seen);
+    }
+    return most;
 }
 
 double Sight::of(const Point& p, double clear) const {
@@ -41,9 +66,12 @@ double Sight::of(const Point& p, double clear) const {
     std::vector<Hit> hits;
     scene_.embree->layers(ray, hits);
     double seen = 1;
-    for (const Hit& h : hits)
-        if (in_surface(h, ray, p, pixel) ? h.geometry >= over_ && scene_.things[h.geometry].shares_plane : h.distance < end) seen *= 1 - scene_.things[h.geometry].opacity;
-    return seen;
+    bool covered = false;
+    for (const Hit& h : hits) {
+        if (in_surface(h, ray, p, pixel)) covered = covered || (h.geometry >= later_ && scene_.things[h.geometry].shares_plane);
+        else if (h.distance < end) seen *= 1 - hidden_by(scene_.things[h.geometry]);
+    }
+    return covered ? std::min(seen, beside(p, at, pixel)) : seen;
 }
 
 }  // namespace isoparm

@@ -53,6 +53,7 @@ void give_back_memory() {
 #endif
 }
 
+constexpr double kSmallest = 1e-8;  // scene units across: from 1e-9 on down products of three lengths are no normal numbers
 constexpr double kFrontTolerance = 2e-3;  // of meshes that only tell front from back, in sizes of the scene
 
 class Builder {
@@ -62,6 +63,7 @@ public:
         const Bounds box = bounding_box(scene);
         size_ = box.diagonal() > 0 ? box.diagonal() : 1;
         centre_ = 0.5 * (box.low + box.high);
+        if (!exact && size_ < kSmallest) throw_input("the scene is " + to_text(size_) + " units across, so small that products of lengths vanish in single precision, in which rays meet triangles, expected at least " + to_text(kSmallest) + "; choose a smaller unit of length, or --exact");
         result_.embree = std::make_unique<EmbreeScene>(centre_);
         // Room for the rounding to float32, half a unit in the last place of each coordinate about the centre; a
         // tolerance below that cannot be kept, and certified_error will say so.
@@ -128,10 +130,11 @@ private:
         thing.mesh = &mesh;
         thing.inside_out = known.inside_out;
         if (o.opacity > 0) {
+            const EmbreeScene::Sheet sheet(thing.opacity, thing.pane);
             std::vector<EmbreeScene::Plane> planes;
             for (const MeshPart& part : mesh.parts) planes.push_back(planes_[done_].empty() ? EmbreeScene::Plane{} : planes_[done_][part.member]);
-            if (known.quads) result_.embree->add_quads(*known.quads, {thing.opacity, thing.pane}, planes);
-            else if (!exact_) result_.embree->add_mesh(mesh, {thing.opacity, thing.pane}, planes);
+            if (known.quads) result_.embree->add_quads(*known.quads, sheet, planes);
+            else if (!exact_) result_.embree->add_mesh(mesh, sheet, planes);
             for (const MeshPart& part : mesh.parts) {
                 const EmbreeScene::Plane& plane = planes[std::size_t(&part - mesh.parts.data())];
                 thing.shares_plane = plane.shared();
@@ -140,21 +143,21 @@ private:
                 thing.patch = &surface.patches[part.member].patch;
                 thing.error = grid_ > 0 ? errors_[&surface][std::size_t(&part - mesh.parts.data())] : part.certified_error;
                 result_.things.push_back(thing);
-                if (exact_) add_patch(result_.things.back(), surface, plane);
+                if (exact_) add_patch(result_.things.back(), surface, sheet, plane);
             }
             ++group_;
         }
         if (o.boundary && !(o.line.width > 0)) add_boundary(o, surface);
     }
 
-    void add_patch(Thing& thing, const Surface& surface, const EmbreeScene::Plane& plane) {
+    void add_patch(Thing& thing, const Surface& surface, const EmbreeScene::Sheet& sheet, const EmbreeScene::Plane& plane) {
         const ExactPatch*& known = exact_of_[thing.patch];
         try {
             if (!known) known = &result_.patches.emplace_back(*thing.patch, size_);
         } catch (const Error& e) {
             throw Error(e.kind(), "surface \"" + surface.name + "\": " + e.what());
         }
-        result_.embree->add_patch(*known, group_, {thing.opacity, thing.pane}, plane);
+        result_.embree->add_patch(*known, group_, sheet, plane);
         thing.flipped = thing.part->flipped;
         thing.error = 0;
         thing.mesh = nullptr;

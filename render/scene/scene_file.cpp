@@ -99,7 +99,7 @@ ImageSettings read_image(const Json& j, const SceneValues& values) {
     if (const auto samples = j.find("samples")) image.samples = values.integer(*samples, 1, 65536, "a number of samples a pixel");
     if (const auto noise = j.find("noise")) image.noise = values.in_range(*noise, 1e-5, 1, "the noise to reach, 1e-5 to 1; a grey level of 255 is 0.004");
     if (const auto background = j.find("background")) {
-        if (!(background->is(Kind::string) && background->string() == "transparent")) image.background = values.color(*background);
+        if (!(background->is(Kind::string) && lower_case(background->string()) == "transparent")) image.background = values.color(*background, " or \"transparent\"");
     } else {
         image.background = Color{1, 1, 1};
     }

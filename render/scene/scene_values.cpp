@@ -1,7 +1,5 @@
 #include "scene/scene_values.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -239,16 +237,15 @@ std::vector<std::string> color_names() {
 }
 }  // namespace
 
-Color SceneValues::color(const Json& j) const {
-    const std::string expected = "a colour: [r, g, b] with values from 0 to 1, \"#rrggbb\" or a basic name of CSS (" + listed(color_names()) + ")";
+Color SceneValues::color(const Json& j, const std::string& or_else) const {
+    const std::string expected = "a colour: [r, g, b] with values from 0 to 1, \"#rrggbb\" or a basic name of CSS (" + listed(color_names()) + ")" + or_else;
     Color c;
     if (j.is(Kind::array) && j.size() == 3) {
         for (int i = 0; i < 3; ++i) c[i] = linear(in_range(j[i], 0, 1, "a part of a colour, from 0 to 1"));
         return c;
     }
     if (!j.is(Kind::string)) j.expected(expected);
-    std::string s = j.string();
-    std::transform(s.begin(), s.end(), s.begin(), [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    std::string s = lower_case(j.string());
     for (const auto& [name, hex] : kColorNames)
         if (s == name) s = hex;
     if ((s.size() != 4 && s.size() != 7) || s[0] != '#') j.expected(expected + did_you_mean(s, color_names()));

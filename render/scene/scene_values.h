@@ -46,7 +46,8 @@ public:
     Transform transform(const Json& j) const;
     static const std::vector<std::string>& transform_keys();
     /// A basic name of CSS ("red"), "#rrggbb", "#rgb" or [r,g,b]: sRGB in [0,1], turned into linear.
-    Color color(const Json& j) const;
+    /// `or_else`: what else may stand there, in the message.
+    Color color(const Json& j, const std::string& or_else = "") const;
 };
 
 }  // namespace isoparm

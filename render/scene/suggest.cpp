@@ -60,4 +60,9 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
     return found ? "; did you mean " + quoted(*found) + "?" : "";
 }
 
+std::string lower_case(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
 }  // namespace isoparm

@@ -10,4 +10,7 @@ std::string quoted(const std::string& text);
 std::string listed(const std::vector<std::string>& names);
 /// "; did you mean \"points\"?" when a name is close, otherwise "".
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& names);
+/// Of the letters of ASCII.
+std::string lower_case(std::string text);
+
 }  // namespace isoparm
