@@ -302,6 +302,19 @@ TEST(Commands, ScenesWithNothingToDrawAreToldOf) {
     EXPECT_EQ(run("render away.json --size 8x8 --samples 1 --crop 0,0,4,4 -o a.png", t.path()).err.find("note"), std::string::npos) << "a part may be empty";
     EXPECT_EQ(run("render away.json --size 8x8 --samples 1 --quiet -o a.png", t.path()).err, "");
 }
+TEST(Commands, ScenesTooSmallForSinglePrecisionAreRefused) {
+    const TemporaryFolder t;
+    const auto render = [&](const std::string& z, const std::string& more) {
+        write_all(t / "s.json", R"({"isoparm": 1, "surfaces": {"s": {"type": "bilinear", "points": [[0,0,0],[)" + z + ",0,0],[0," + z + ",0],[" + z + "," + z + R"(,0]]}}, "objects": [{"surface": "s", "boundary": false}]})");
+        return run("render s.json --size 16x12 --samples 1 -o s.png" + more, t.path());
+    };
+    EXPECT_EQ(render("1e-8", "").code, 0);
+    EXPECT_EQ(render("1e-12", " --exact").code, 0);
+    const Outcome small = render("1e-12", "");
+    EXPECT_EQ(small.code, 65);
+    EXPECT_NE(small.err.find("s.json: found a scene 1.414"), std::string::npos) << small.err;
+    EXPECT_NE(small.err.find("choose a smaller unit of length, or --exact"), std::string::npos) << small.err;
+}
 TEST(Commands, WithoutFontsLabelsAreAnErrorAndPicturesAreNot) {
     const TemporaryFolder t;
     write_all(t / "fonts.conf", "<?xml version=\"1.0\"?><fontconfig></fontconfig>");

@@ -66,6 +66,13 @@ one that was being made, and without the film.
 )";
 
 constexpr int kUnfinished = -1;
+constexpr double kSmallest = 1e-8;  // scene units across: from 1e-9 on down products of three lengths are no normal numbers
+
+void check_size(const Scene& scene, double size, bool exact) {
+    if (exact || !(size > 0) || size >= kSmallest) return;
+    throw_input(scene.path + ": found a scene " + to_text(size) + " units across, so small that products of lengths vanish in single precision, in which rays meet triangles, expected at least " +
+                to_text(kSmallest) + "; choose a smaller unit of length, or --exact");
+}
 
 bool blank(const Picture& picture, const std::optional<Color>& background) {
     const auto same = [&](const float* pixel) {
@@ -86,7 +93,7 @@ void tell_if_blank(const Scene& scene, const Picture& picture, const std::string
 /// Whether the picture is as good as was asked for, as an exit code; or kUnfinished, and then `one_of_many`, a frame, is not written. `name`: in messages.
 int render_one(const Scene& scene, const std::string& output, const std::string& name, RenderOptions how, const Options& options, bool one_of_many) {
     const bool quiet = options.quiet();
-    finite_diagonal(scene, bounding_box(scene));
+    check_size(scene, finite_diagonal(scene, bounding_box(scene)), how.exact);
     how = rendering_of(std::move(how), output);
     const Picture picture = [&] {
         ProgressBar bar("rendering", quiet);

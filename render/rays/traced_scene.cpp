@@ -53,7 +53,6 @@ void give_back_memory() {
 #endif
 }
 
-constexpr double kSmallest = 1e-8;  // scene units across: from 1e-9 on down products of three lengths are no normal numbers
 constexpr double kFrontTolerance = 2e-3;  // of meshes that only tell front from back, in sizes of the scene
 
 class Builder {
@@ -63,7 +62,6 @@ public:
         const Bounds box = bounding_box(scene);
         size_ = box.diagonal() > 0 ? box.diagonal() : 1;
         centre_ = 0.5 * (box.low + box.high);
-        if (!exact && size_ < kSmallest) throw_input("the scene is " + to_text(size_) + " units across, so small that products of lengths vanish in single precision, in which rays meet triangles, expected at least " + to_text(kSmallest) + "; choose a smaller unit of length, or --exact");
         result_.embree = std::make_unique<EmbreeScene>(centre_);
         // Room for the rounding to float32, half a unit in the last place of each coordinate about the centre; a
         // tolerance below that cannot be kept, and certified_error will say so.
