@@ -112,7 +112,7 @@ private:
         Thing thing;
         thing.front = color_of(o, surface_color(surfaces_++));
         // Both sides of a translucent sheet look alike, so that it keeps its colour where several lie over each other; and glass has one colour of what passes.
-        thing.back = o.back.value_or(o.opacity < 1 || o.material.kind == Material::Kind::glass ? thing.front : back_color(thing.front));
+        thing.back = o.back.value_or(o.opacity < 1 || (scene_.lighting && o.material.kind == Material::Kind::glass) ? thing.front : back_color(thing.front));
         thing.opacity = o.opacity;
         thing.material = o.material;
         thing.pane = scene_.lighting && o.opacity > 0 && o.material.kind == Material::Kind::glass && o.material.thin;
