@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "error.h"
+#include "light/bsdf.h"
 #include "light/environment.h"
 #include "light/lights.h"
 #include "picture/picture.h"
@@ -294,6 +295,36 @@ TEST(Ground, LiesUnderTheLowestPoint) {
         EXPECT_GE(c, 0.0f);
         EXPECT_LE(c, 1.0f);
     }
+}
+
+
+// ---- through glass
+
+TEST(Page, IsSeenThroughGlassAsBesideIt) {
+    // A pane, and two panes that bound a body, before the ground in the shadow of a black ball under an even sky of 0.7; what they mirror is the sky.
+    const auto seen = [&](const char* glass, const char* background, const std::string& lights, bool ground, bool exact) {
+        const TemporaryFolder folder;
+        const std::string material = std::string(R"(, "boundary": false, "material": {"type": "glass", "thin": )") + (std::string(glass) == "pane" ? "true}}" : "false}}");
+        write_all(folder / "s.json", R"({"isoparm": 1, "surfaces": {"pane": {"type": "bilinear", "points": [[-1,-3,0.01],[1,-3,0.01],[-1,-3,1],[1,-3,1]]}, "back": {"type": "bilinear", "points": [[1,-2.9,0.01],[-1,-2.9,0.01],[1,-2.9,1],[-1,-2.9,1]]},
+            "body": {"type": "composite", "members": ["pane", "back"]}}, "objects": [{"surface": ")" + std::string(glass) + "\"" + material + R"(, {"point": [0,0,3], "radius": 1, "color": "black", "material": "diffuse"}], )" + kAtTheMiddle +
+            R"("image": {"width": 3, "height": 3, "samples": 1024, "background": ")" + background + R"("}, "ground": )" + (ground ? R"({"height": 0})" : "false") + R"(, "lighting": {"bounces": 12, "lights": [)" + lights + "]}}");
+        RenderOptions options;
+        options.exact = exact;
+        const Image image = render(load_scene(folder / "s.json"), options).image;
+        EXPECT_EQ(middle(image)[3], 1.0f) << "glass hides in alpha, whatever the page is";
+        return double(middle(image)[1]);
+    };
+    const double cosine = 6 / std::hypot(6, 0.9), pane = pane_fresnel(cosine, 1.5), once = fresnel(cosine, 1.5), body = 1 - (1 - once) * (1 - once);
+    const std::string sky = R"({"type": "environment", "radiance": 0.7})", lamp = R"({"type": "sphere", "center": [0,2,-0.3], "radius": 0.2, "radiance": 100})", seen_sky = R"({"type": "environment", "radiance": 0.7, "seen": true})";
+    for (const bool exact : {false, true})
+        for (const auto& [glass, mirrored] : {std::pair("pane", pane), {"body", body}}) {
+            for (const auto& [background, page] : {std::pair("white", 1.0), {"transparent", 1.0}, {"black", 0.0}}) {
+                EXPECT_NEAR(seen(glass, background, sky, true, exact), mirrored * 0.7 + (1 - mirrored) * page * (1 - 1 / 9.0), 0.004) << glass << background << exact;
+                EXPECT_NEAR(seen(glass, background, sky, false, exact), mirrored * 0.7 + (1 - mirrored) * page, 0.002) << glass << background << exact;
+            }
+            if (mirrored == pane) EXPECT_NEAR(seen(glass, "white", lamp, false, exact), 1 - mirrored, 0.002) << "lamps are not seen but in mirrors, as a body's second side is one; and mirrored is the dark";
+            EXPECT_NEAR(seen(glass, "black", seen_sky, false, exact), 0.7, 1e-6) << "environments that are seen are seen";
+        }
 }
 
 }  // namespace

@@ -192,7 +192,7 @@ TEST(Light, GlassHasOneColourFromBothSides) {
     // A clear body of glass, and white sheets seen from behind, in an even sky: nothing is gained, and nothing lost but what the last bounce leaves.
     const auto lit = [](const std::string& object) {
         return double(picture(R"(, "body": {"type": "subdivision", "vertices": [[-1,-1,-1],[1,-1,-1],[1,1,-1],[-1,1,-1],[-1,-1,1],[1,-1,1],[1,1,1],[-1,1,1]], "faces": [[0,3,2,1],[4,5,6,7],[0,1,5,4],[1,2,6,5],[2,3,7,6],[3,0,4,7]]}, "down": {"type": "bilinear", "points": [[-9,-9,0],[9,-9,0],[-9,9,0],[9,9,0]]})",
-                              object, R"({"bounces": 64, "lights": [{"type": "environment", "radiance": 1}]})", 1024).at(0, 0)[1]);
+                              object, R"({"bounces": 64, "lights": [{"type": "environment", "radiance": 1, "seen": true}]})", 1024).at(0, 0)[1]);
     };
     EXPECT_NEAR(lit(R"({"surface": "body", "material": "glass"})"), 1, 0.002);
     EXPECT_NEAR(lit(R"({"surface": "floor", "color": "white", "material": "diffuse"})"), 1, 0.002);

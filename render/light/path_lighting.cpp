@@ -18,6 +18,12 @@ const Color kWhite{1, 1, 1};
 /// What the surfel shows, its ink included.
 Color reflectance(const Surfel& s) { return (1 - s.ink_cover) * s.color + s.ink_cover * s.ink; }
 
+/// Of light that is lacking, the part of all.
+Color part_of(const Color& lacks, const Color& all) {
+    const auto part = [](double l, double of) { return of > 0 ? l / of : 0; };
+    return {part(lacks.x, all.x), part(lacks.y, all.y), part(lacks.z, all.z)};
+}
+
 /// What a sheet or pane does to light that meets it: the part that is scattered there, and what goes straight on.
 struct Passage {
     double scattered = 1;
@@ -59,6 +65,7 @@ struct PathLighting::Path {
     std::uint32_t under = Hit::none;  // layers() for it
     double density = 0;   // of its direction; 0: the only one
     bool spread = false;  // was scattered evenly at some point
+    bool clear = true;      // has passed through glass and nothing else: the camera looks along the ray
     bool mirrored = false;  // `at` is on a pane, which does nothing else
     bool ended = false;
 };
@@ -89,8 +96,8 @@ struct PathLighting::Batch {
     }
 };
 
-PathLighting::PathLighting(const LightingSettings& settings, const Camera& camera, const EnvironmentImages& images, const std::optional<Ground>& ground)
-    : settings_(settings), camera_(camera), lights_(settings.lights, camera, images) {
+PathLighting::PathLighting(const LightingSettings& settings, const Camera& camera, const EnvironmentImages& images, const std::optional<Ground>& ground, const Color& page)
+    : settings_(settings), camera_(camera), lights_(settings.lights, camera, images), ground_(ground), page_(page), page_is_seen_(!lights_.backdrop({0, 0, 1})) {
     if (ground) sky_on_ground_ = lights_.sky_irradiance(ground->up);
 }
 
@@ -107,12 +114,11 @@ void PathLighting::shade(const TracedScene& scene, const Surfel* surfels, int n,
         batch.drop_ended(out);
     }
     for (int i = 0; i < n; ++i)
-        if (surfels[i].ground) {  // from what it lacks to the part that it lacks
-            const Color all = (1 / std::numbers::pi) * (sky_on_ground_ + lights_.irradiance(surfels[i].origin, surfels[i].normal));
-            const auto part = [](double lacks, double of) { return of > 0 ? lacks / of : 0; };
-            out[i] = {part(out[i].x, all.x), part(out[i].y, all.y), part(out[i].z, all.z)};
-        }
+        if (surfels[i].ground) out[i] = part_of(out[i], light_on(surfels[i]));  // from what it lacks to the part that it lacks
 }
+
+/// What a white plane there would throw back if nothing were on it.
+Color PathLighting::light_on(const Surfel& ground) const { return (1 / std::numbers::pi) * (sky_on_ground_ + lights_.irradiance(ground.origin, ground.normal)); }
 
 void PathLighting::ask_lights(Batch& batch) const {
     Ray to_light[EmbreeScene::packet];
@@ -150,7 +156,9 @@ void PathLighting::scatter(Batch& batch) const {
         const Bsdf::Sample s = p.mirrored ? Bsdf::mirrored(out) : bsdf.sample(out, batch.random(p, kChoices).y, batch.random(p, kDirection));
         const bool caustic = p.spread && !settings_.caustics;  // what the coat, metal or glass would throw now
         const Color even = s.density > 0 && !bsdf.specular() ? bsdf.spread(out, s.direction) / s.density : Color{};
-        p.to_lamps = product(p.throughput, caustic ? even : s.weight);
+        const bool through = !(s.direction.z > 0);
+        p.clear = p.clear && bsdf.specular() && through;
+        p.to_lamps = p.clear && page_is_seen_ ? Color{} : product(p.throughput, caustic ? even : s.weight);  // the camera sees no lamps
         p.throughput = product(p.throughput, s.weight);
         const double most = std::max({p.throughput.x, p.throughput.y, p.throughput.z});
         p.ended = !(most > 0);
@@ -160,7 +168,6 @@ void PathLighting::scatter(Batch& batch) const {
             if (batch.random(p, kChances).x >= goes_on) p.ended = true;
             p.throughput = p.throughput / goes_on, p.to_lamps = p.to_lamps / goes_on;
         }
-        const bool through = !(s.direction.z > 0);
         p.under = through ? p.at.over : Hit::none;
         p.ray = {through && p.under == Hit::none ? p.at.beneath : p.at.origin, normalized(frame.to_world(s.direction))};
         p.density = bsdf.specular() ? 0 : s.density;
@@ -197,6 +204,22 @@ void PathLighting::find_points(Batch& batch, Hit* hits) const {
     }
 }
 
+/// What the camera sees through glass is what it sees beside it: the page, and the shadows on the ground. True: so it is with this path; it has ended, or goes on from the ground.
+bool PathLighting::see_page(const TracedScene& scene, Path& p, const Hit& hit) const {
+    if (!p.clear || !page_is_seen_) return false;
+    const double distance = ground_ ? ground_->meet(p.ray.origin, p.ray.direction) : -1;
+    const bool on_ground = distance >= 0 && distance < hit.distance;
+    if (hit.found() && !on_ground) return false;
+    p.light += product(p.throughput, page_);
+    p.ended = !on_ground;
+    if (p.ended) return true;
+    Surfel ground = ground_surfel(*ground_, p.ray, distance, scene);
+    ground.sample = p.at.sample, ground.dimension = p.at.dimension;
+    p.at = ground;
+    p.throughput = part_of(ground_->shadow * product(p.throughput, page_), light_on(ground));
+    return true;
+}
+
 void PathLighting::follow(Batch& batch) const {
     Hit hits[EmbreeScene::packet], met[EmbreeScene::packet];
     find_points(batch, hits);
@@ -204,6 +227,7 @@ void PathLighting::follow(Batch& batch) const {
     int who[EmbreeScene::packet], count = 0;
     for (int i = 0; i < batch.n; ++i) {
         Path& p = batch.paths[i];
+        if (see_page(batch.scene, p, hits[i])) continue;
         p.ended = !hits[i].found();
         if (p.at.ground) {  // lamps were asked for already; what hides the sky takes its light away
             if (!p.ended) p.light += -1 * product(p.throughput, lights_.sky(p.ray.direction) + lights_.behind(p.ray, p.density));

@@ -11,8 +11,8 @@ namespace isoparm {
 /// Immutable; safe to use from every thread. The same light for every number of threads and any order of pixels.
 class PathLighting : public Lighting {
 public:
-    /// `ground`, if there is one: with its height; its `up` is the normal of surfels that are of it.
-    PathLighting(const LightingSettings& settings, const Camera& camera, const EnvironmentImages& images, const std::optional<Ground>& ground);
+    /// `ground`, if there is one: with its height; its `up` is the normal of surfels that are of it. `page`: what the camera sees where nothing is, but for environments that are seen.
+    PathLighting(const LightingSettings& settings, const Camera& camera, const EnvironmentImages& images, const std::optional<Ground>& ground, const Color& page);
     int dimensions() const override { return kDimensions * (settings_.bounces + 1); }
     void shade(const TracedScene& scene, const Surfel* surfels, int n, Color* out) const override;
     std::optional<Color> backdrop(const Point& direction) const override { return lights_.backdrop(direction); }
@@ -25,11 +25,16 @@ private:
     void pass_pane(Path& path, double distance, const Color& tint) const;
     void scatter(Batch& batch) const;
     void find_points(Batch& batch, Hit* hits) const;
+    bool see_page(const TracedScene& scene, Path& path, const Hit& hit) const;
     void follow(Batch& batch) const;
+    Color light_on(const Surfel& ground) const;
 
     LightingSettings settings_;
     Camera camera_;
     Lights lights_;
+    std::optional<Ground> ground_;
+    Color page_;
+    bool page_is_seen_;    // no environment is
     Color sky_on_ground_;  // irradiance
 };
 

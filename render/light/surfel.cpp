@@ -59,6 +59,9 @@ void set_corners(const Thing& thing, const Hit& hit, int i, SurfelLanes& p) {
     p.u[i] = hit.u, p.v[i] = hit.v;
 }
 
+/// So far from surfaces rays begin, beside what meshes may be off.
+double clear_of(const TracedScene& scene) { return 4e-6 * scene.embree->radius(); }
+
 /// What is no point of a mesh of a patch with a normal: tubes and balls, patches themselves, poles. Second derivatives are needed only for the limit where
 /// the first ones do not span a plane.
 void set_otherwise(const Thing& thing, const Ray& ray, const Hit& hit, const Vec2& at, int i, SurfelLanes& p) {
@@ -126,7 +129,7 @@ void surfels_at(const TracedScene& scene, const Camera& camera, const Ray* rays,
     SurfelLanes p;
     Vec2 at[EmbreeScene::packet];
     const int lanes = (n + SurfelLanes::group - 1) / SurfelLanes::group * SurfelLanes::group;
-    const double clear = 4e-6 * scene.embree->radius();
+    const double clear = clear_of(scene);
     set_frames(scene, hits, n, at, p);
     for (int i = 0; i < lanes; ++i) {
         const int k = i < n ? i : 0;
@@ -143,6 +146,20 @@ void surfels_at(const TracedScene& scene, const Camera& camera, const Ray* rays,
         if (const Thing& thing = scene.things[hits[i].geometry]; !thing.mesh || !p.regular[i]) set_otherwise(thing, rays[i], hits[i], at[i], i, p);
     kernel.places(lanes, p);
     for (int i = 0; i < n; ++i) make_surfel(scene.things[hits[i].geometry], hits[i].geometry, camera, at[i], p, i, out[i]);
+}
+
+Surfel ground_surfel(const Ground& ground, const Ray& ray, double distance, const TracedScene& scene) {
+    static const Material paper{Material::Kind::diffuse};
+    Surfel s;
+    s.ground = true;
+    s.view = -ray.direction;
+    s.position = ray.origin + distance * ray.direction;
+    s.normal = s.shading = s.geometric = ground.up;
+    const double clear = clear_of(scene);
+    s.origin = s.position + clear * s.normal, s.beneath = s.position - clear * s.normal;
+    s.color = {1, 1, 1};
+    s.material = &paper;
+    return s;
 }
 
 }  // namespace isoparm

@@ -10,4 +10,7 @@ namespace isoparm {
 /// One for each of the n hits, hit k by rays[k], into surfels as they are constructed; n is at most EmbreeScene::packet.
 void surfels_at(const TracedScene& scene, const Camera& camera, const Ray* rays, const Hit* hits, int n, Surfel* out);
 
+/// Where a ray meets the ground, at that distance.
+Surfel ground_surfel(const Ground& ground, const Ray& ray, double distance, const TracedScene& scene);
+
 }  // namespace isoparm

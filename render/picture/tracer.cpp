@@ -152,19 +152,6 @@ std::optional<Hit> Tracer::ground_hit(const Ray& ray, double end) const {
     return hit;
 }
 
-Surfel Tracer::ground_surfel(const Ray& ray, double distance) const {
-    Surfel s;
-    s.ground = true;
-    s.view = -ray.direction;
-    s.position = ray.origin + distance * ray.direction;
-    s.normal = s.shading = s.geometric = ground_->up;
-    const double clear = 4e-6 * scene_.embree->radius();
-    s.origin = s.position + clear * s.normal, s.beneath = s.position - clear * s.normal;
-    s.color = {1, 1, 1};
-    s.material = &paper_;
-    return s;
-}
-
 void Tracer::surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const {
     Ray by[EmbreeScene::packet];
     Hit found[EmbreeScene::packet];
@@ -172,7 +159,7 @@ void Tracer::surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const
     int who[EmbreeScene::packet], count = 0;
     for (int k = 0; k < n; ++k) {
         if (hits[k].found()) who[count] = k, by[count] = rays[k], found[count++] = hits[k];
-        else out[k] = ground_surfel(rays[k], hits[k].distance);
+        else out[k] = ground_surfel(*ground_, rays[k], hits[k].distance, scene_);
     }
     surfels_at(scene_, camera_, by, found, count, some);
     for (int k = 0; k < count; ++k) out[who[k]] = some[k];

@@ -57,7 +57,6 @@ private:
     Rgba finished(Rgba pixel) const;
     /// What a ray meets of the ground before `end`.
     std::optional<Hit> ground_hit(const Ray& ray, double end) const;
-    Surfel ground_surfel(const Ray& ray, double distance) const;
     void surfels(const Ray* rays, const Hit* hits, int n, Surfel* out) const;
     /// May a sample of the pixel be anything but empty?
     bool may_meet(int x, int y) const { return open_ || coverage_.may_meet(x, y); }
@@ -71,7 +70,6 @@ private:
     int samples_;
     std::optional<Color> background_;
     std::optional<Ground> ground_;
-    Material paper_{Material::Kind::diffuse};
     Coverage coverage_;
     bool open_;  // rays that meet nothing of the scene see something else than the background
 };

@@ -24,7 +24,7 @@ double in_scene_units(const Tolerance& t, const Camera& camera, const Bounds& bo
 }
 
 std::unique_ptr<const Lighting> lighting_of(const Scene& scene, const Camera& camera, const EnvironmentImages& environments, const std::optional<Ground>& ground) {
-    if (scene.lighting) return std::make_unique<PathLighting>(*scene.lighting, camera, environments, ground);
+    if (scene.lighting) return std::make_unique<PathLighting>(*scene.lighting, camera, environments, ground, scene.image.background.value_or(Color{1, 1, 1}));
     return std::make_unique<FigureLighting>(camera, ground);
 }
 
