@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "picture/picture.h"
 #include "run_program.h"
 #include "scene/registry.h"
 #include "scene/scene.h"
@@ -47,6 +48,21 @@ TEST(Figures, AllRenderToAContactSheet) {
     EXPECT_EQ(result.code, 0) << result.err;
     for (const std::string& name : shipped_scenes()) EXPECT_GT(test::read_all(t / ("out/" + name + ".png")).size(), 200u) << name;
     EXPECT_GT(test::read_all(t / "out/contact_sheet.png").size(), 2000u);
+}
+
+TEST(Figures, MaterialsAreAsTheSceneSays) {
+    RenderOptions how;
+    how.width = 60, how.height = 45, how.samples = 64;
+    const Image image = render(shipped("materials"), how).image;
+    for (const int x : {0, 59})
+        for (int k = 0; k < 3; ++k) EXPECT_EQ(image.at(x, 0)[k], 1.0f);
+    how.width = 480, how.height = 360, how.crop = {418, 172, 422, 176};
+    const Image shadow = render(shipped("materials"), how).image;
+    for (const auto& [k, light] : {std::pair(0, 0.69), {1, 0.82}, {2, 0.92}}) {
+        double mean = 0;
+        for (int i = 0; i < 16; ++i) mean += double(shadow.at(i % 4, i / 4)[k]) / 16;
+        EXPECT_NEAR(mean, light, 0.02) << k;
+    }
 }
 
 // ---- seed 000 -------------------------------------------------------------------------------------------------------
